@@ -1,0 +1,76 @@
+//! Shapes as scene building hands them over, before they are sorted into kernels' arrays.
+
+use glam::{Vec2, Vec3};
+
+/// What a hit names: the leaf object, and the primitive within it, both as counted in the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct PrimitiveId {
+    /// Index of the leaf object, depth first in file order.
+    pub object: u32,
+    /// Index within the object: triangle; box face 0-5; cylinder and cone 0 side, 1 base, 2 top; else 0.
+    pub primitive: u32,
+}
+
+/// A shape in world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// All points at `radius` from `center`.
+    Sphere {
+        /// Centre.
+        center: Vec3,
+        /// Radius, > 0.
+        radius: f32,
+    },
+    /// The infinite plane through `point`; as a body, the half-space against `normal`.
+    Plane {
+        /// Any point on it.
+        point: Vec3,
+        /// Unit normal.
+        normal: Vec3,
+    },
+    /// A triangle; its geometric normal is (b - a) x (c - a).
+    Triangle {
+        /// Corners, counter-clockwise seen from outside.
+        vertices: [Vec3; 3],
+    },
+    /// A flat disk.
+    Disk {
+        /// Centre.
+        center: Vec3,
+        /// Unit normal.
+        normal: Vec3,
+        /// Radius, > 0.
+        radius: f32,
+    },
+    /// The open side of a cylinder (equal radii) or truncated cone; normals point outward.
+    Cone {
+        /// Centre of the base.
+        base: Vec3,
+        /// Centre of the top.
+        top: Vec3,
+        /// Radius at the base, >= 0.
+        radius_base: f32,
+        /// Radius at the top, >= 0, not both 0.
+        radius_top: f32,
+    },
+}
+
+/// What a triangle's corners carry besides positions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VertexAttributes {
+    /// Unit shading normals, or `None` for the flat normal.
+    pub normals: Option<[Vec3; 3]>,
+    /// Texture coordinates.
+    pub uvs: Option<[Vec2; 3]>,
+}
+
+/// One shape with its identity. Several parts may share an identity (the two triangles of a rectangle).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// The shape in world space.
+    pub shape: Shape,
+    /// Whose it is.
+    pub id: PrimitiveId,
+    /// Corner data, triangles only.
+    pub attributes: Option<VertexAttributes>,
+}

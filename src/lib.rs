@@ -1,0 +1,8 @@
+//! raywalk: a first-person walkthrough viewer that ray-traces every frame on CPU threads.
+#![warn(missing_docs)]
+
+pub mod settings;
+
+pub mod geometry;
+pub mod render;
+pub mod scene;

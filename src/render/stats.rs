@@ -1,0 +1,76 @@
+//! What a frame cost, and how its pixels were obtained.
+
+use serde::Serialize;
+
+/// Rays really traced, by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RayCounts {
+    /// From the eye.
+    pub primary: u64,
+    /// Towards lights.
+    pub shadow: u64,
+    /// Mirrored.
+    pub reflection: u64,
+    /// Refracted.
+    pub refraction: u64,
+}
+
+/// How pixels were obtained; they add up to the picture's size.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct PixelCounts {
+    /// A ray of their own.
+    pub traced: u64,
+    /// From a candidate list or a known primitive.
+    pub resolved: u64,
+    /// Proven by their block.
+    pub certified: u64,
+    /// Interpolated from neighbours.
+    pub interpolated: u64,
+}
+
+/// CPU milliseconds by stage, summed over threads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct StageTimes {
+    /// Finding what each pixel sees.
+    pub visibility: f64,
+    /// Proving that nothing was missed.
+    pub certificate: f64,
+    /// Shadow rays.
+    pub shadow: f64,
+    /// Shading.
+    pub shade: f64,
+    /// Tracing reflected and refracted rays.
+    pub secondary: f64,
+    /// Tone map and encoding.
+    pub resolve: f64,
+    /// Showing the frame (window only).
+    pub present: f64,
+}
+
+/// How often the last blocker answered a shadow ray.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct CacheCounts {
+    /// Shadow rays that asked the cache.
+    pub queries: u64,
+    /// Of these, blocked by the cached object.
+    pub hits: u64,
+}
+
+/// What [`render_frame`](super::render_frame) reports.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FrameStats {
+    /// False when the frame was cancelled; its film is then a mix.
+    pub completed: bool,
+    /// Wall time of the frame in milliseconds.
+    pub frame_ms: f64,
+    /// Rays by kind.
+    pub rays: RayCounts,
+    /// Pixels by how they were obtained.
+    pub pixels: PixelCounts,
+    /// Pixels that got more than one ray.
+    pub supersampled: u64,
+    /// CPU time by stage.
+    pub stages_ms: StageTimes,
+    /// The shadow-object cache.
+    pub shadow_cache: CacheCounts,
+}

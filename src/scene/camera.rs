@@ -1,0 +1,137 @@
+//! The pinhole camera: position, direction and field of view, and the rays it makes.
+
+use glam::{DVec3, Vec3};
+
+/// A pinhole camera in a right-handed world; angles in degrees, the field of view vertical.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Position of the eye.
+    pub eye: Vec3,
+    /// A point on the optical axis.
+    pub look_at: Vec3,
+    /// Roughly up; must not be parallel to the view.
+    pub up: Vec3,
+    /// Vertical field of view in degrees, in (0, 180).
+    pub fov: f32,
+    /// Least distance of primary hits, at least 0.
+    pub near: f32,
+    /// Greatest distance of primary hits; infinity for none.
+    pub far: f32,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Self {
+            eye: Vec3::new(0.0, 0.0, 5.0),
+            look_at: Vec3::ZERO,
+            up: Vec3::Y,
+            fov: 60.0,
+            near: 0.0,
+            far: f32::INFINITY,
+        }
+    }
+}
+
+/// The camera's basis for one picture size: pixel (x, y), row 0 on top, looks along
+/// `forward + (2(x + .5)/W - 1) right + (1 - 2(y + .5)/H) up`, where `right` and `up` are already
+/// scaled by the field of view and the picture's aspect.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraFrame {
+    /// Position of the eye.
+    pub eye: Vec3,
+    /// Unit vector along the optical axis.
+    pub forward: Vec3,
+    /// Half of the picture's width at unit distance.
+    pub right: Vec3,
+    /// Half of the picture's height at unit distance.
+    pub up: Vec3,
+    /// Picture width in pixels.
+    pub width: u32,
+    /// Picture height in pixels.
+    pub height: u32,
+    /// Least distance of primary hits.
+    pub near: f32,
+    /// Greatest distance of primary hits.
+    pub far: f32,
+}
+
+impl Camera {
+    /// A camera at `eye` with `yaw` 0 looking along -Z, positive turning left, and positive `pitch` looking up (degrees).
+    pub fn from_yaw_pitch(eye: Vec3, yaw: f32, pitch: f32, fov: f32) -> Self {
+        let (yaw, pitch) = (f64::from(yaw).to_radians(), f64::from(pitch).to_radians());
+        let (sin_yaw, cos_yaw) = (libm::sin(yaw), libm::cos(yaw));
+        let (sin_pitch, cos_pitch) = (libm::sin(pitch), libm::cos(pitch));
+        let direction = DVec3::new(-sin_yaw * cos_pitch, sin_pitch, -cos_yaw * cos_pitch);
+        // Straight up or down, +Y is no longer across the view: the horizontal heading is.
+        let up = if cos_pitch.abs() > 1e-6 {
+            Vec3::Y
+        } else {
+            (DVec3::new(-sin_yaw, 0.0, -cos_yaw) * -sin_pitch.signum()).as_vec3()
+        };
+        Self { eye, look_at: (eye.as_dvec3() + direction).as_vec3(), up, fov, ..Self::default() }
+    }
+
+    /// Whether the camera can make rays: all finite, the view neither zero nor parallel to `up`, `fov` in (0, 180).
+    pub fn is_valid(&self) -> bool {
+        let forward = self.look_at.as_dvec3() - self.eye.as_dvec3();
+        let across = forward.cross(self.up.as_dvec3()).length();
+        let scale = forward.length() * self.up.as_dvec3().length();
+        scale.is_finite()
+            && scale > 0.0
+            && across > 1e-9 * scale
+            && self.fov > 0.0
+            && self.fov < 180.0
+            && self.near >= 0.0
+            && self.near < self.far
+    }
+
+    /// The basis for a picture of `width` x `height` pixels. Computed in f64 and rounded once.
+    pub fn frame(&self, width: u32, height: u32) -> CameraFrame {
+        let forward = (self.look_at.as_dvec3() - self.eye.as_dvec3()).normalize();
+        let right = forward.cross(self.up.as_dvec3()).normalize();
+        let up = right.cross(forward);
+        let half_height = libm::tan(f64::from(self.fov).to_radians() / 2.0);
+        let half_width = half_height * f64::from(width) / f64::from(height);
+        CameraFrame {
+            eye: self.eye,
+            forward: forward.as_vec3(),
+            right: (right * half_width).as_vec3(),
+            up: (up * half_height).as_vec3(),
+            width,
+            height,
+            near: self.near,
+            far: self.far,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn yaw_turns_left_and_pitch_looks_up() {
+        let forward = |yaw, pitch| Camera::from_yaw_pitch(Vec3::ZERO, yaw, pitch, 60.0).frame(4, 4).forward;
+        assert!(forward(0.0, 0.0).abs_diff_eq(Vec3::NEG_Z, 1e-6));
+        assert!(forward(90.0, 0.0).abs_diff_eq(Vec3::NEG_X, 1e-6));
+        assert!(forward(0.0, 90.0).abs_diff_eq(Vec3::Y, 1e-6));
+        for pitch in [-90.0, 90.0] {
+            assert!(Camera::from_yaw_pitch(Vec3::ONE, 30.0, pitch, 60.0).is_valid());
+        }
+    }
+
+    #[test]
+    fn a_camera_that_cannot_make_rays_says_so() {
+        let good = Camera::default();
+        assert!(good.is_valid());
+        for bad in [
+            Camera { look_at: good.eye, ..good },
+            Camera { up: Vec3::Z, ..good },
+            Camera { fov: 180.0, ..good },
+            Camera { fov: f32::NAN, ..good },
+            Camera { near: 2.0, far: 1.0, ..good },
+        ] {
+            assert!(!bad.is_valid(), "{bad:?}");
+        }
+    }
+}

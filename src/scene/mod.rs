@@ -1,0 +1,79 @@
+//! What the place looks like, and how it is read from disk.
+//!
+//! [`load`] turns a file into a [`Scene`]: `format` reads bytes into a typed description
+//! (`desc`), `build` flattens it into geometry, objects, materials and lights.
+//! Architecture invariant: a scene never changes after it was built; a reload makes a new one.
+
+pub mod camera;
+pub mod error;
+pub mod light;
+pub mod material;
+pub mod object;
+pub mod texture;
+
+pub use camera::Camera;
+pub use error::{SceneError, Warning};
+pub use light::Light;
+pub use material::Material;
+pub use object::Object;
+pub use texture::Texture;
+
+use crate::geometry::Geometry;
+use glam::Vec3;
+
+/// A camera that the scene file names.
+#[derive(Clone, Debug)]
+pub struct NamedCamera {
+    /// Its name in the file; the file's unnamed `camera` is called `default`.
+    pub name: String,
+    /// The camera.
+    pub camera: Camera,
+}
+
+/// What the scene file asks of the picture.
+#[derive(Clone, Debug)]
+pub struct RenderDefaults {
+    /// Picture width in pixels, where the file gives one.
+    pub width: Option<u32>,
+    /// Picture height in pixels, where the file gives one.
+    pub height: Option<u32>,
+    /// Most rays on a path, the primary included.
+    pub max_depth: u32,
+    /// Linear colour of a ray that hits nothing.
+    pub background: Vec3,
+    /// Linear ambient light, multiplied by each material's `ambient`.
+    pub ambient: Vec3,
+}
+
+impl Default for RenderDefaults {
+    fn default() -> Self {
+        Self { width: None, height: None, max_depth: 5, background: Vec3::ZERO, ambient: Vec3::ONE }
+    }
+}
+
+/// A scene, ready to be traced.
+#[derive(Debug)]
+pub struct Scene {
+    /// File name or another short title.
+    pub name: String,
+    /// Unique per built scene: caches keyed by it never outlive it.
+    pub generation: u64,
+    /// Shapes and the tree over them.
+    pub geometry: Geometry,
+    /// Leaf objects, depth first in file order; a hit's object index points here.
+    pub objects: Vec<Object>,
+    /// Materials; objects point here. Never empty.
+    pub materials: Vec<Material>,
+    /// Textures; materials point here.
+    pub textures: Vec<Texture>,
+    /// Lights. Empty only with `headlight`.
+    pub lights: Vec<Light>,
+    /// The file has no light: one at the eye is added to every frame (irradiance factor 1, no falloff).
+    pub headlight: bool,
+    /// Cameras of the file; the first is where a walk starts. Never empty: without one in the file, a view of the bounds.
+    pub cameras: Vec<NamedCamera>,
+    /// What the file asks of the picture.
+    pub render: RenderDefaults,
+    /// What was odd about the file, already worded for people.
+    pub warnings: Vec<Warning>,
+}

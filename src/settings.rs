@@ -1,0 +1,428 @@
+//! Every switch and knob of the tracer, as plain data, in one list.
+//!
+//! [`ROWS`] is the single source of the command-line flags, the overlay's controls, the axes of the
+//! bench, the README's table and the test that flips each row alone and checks its promise.
+//! Architecture invariant: this module imports nothing of the crate.
+
+use std::fmt;
+
+/// How the thing seen by each pixel is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Visibility {
+    /// One ray a pixel against the scene: the reference.
+    Full,
+    /// A coarse grid of rays; cells whose corners match are filled in (approximate).
+    Subsample,
+}
+
+/// How a cell whose corners match is filled by [`Visibility::Subsample`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fill {
+    /// Intersect only the primitive of the corners, then shade.
+    Hit,
+    /// Interpolate the corner colours bilinearly.
+    Color,
+}
+
+/// What of a sphere is computed once per common ray origin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SphereCache {
+    /// Nothing.
+    Off,
+    /// Centre minus origin, and the squared radius: the same values as computing them per ray.
+    On,
+    /// The thesis's form, |C-O|² - r²: fewer operations, but it cancels for distant spheres.
+    Thesis,
+}
+
+/// The instruction set the kernels run on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SimdLevel {
+    /// The best that the machine has.
+    Auto,
+    /// Scalar code.
+    Off,
+    /// SSE 4.2, 4 lanes.
+    Sse4,
+    /// AVX2, 8 lanes.
+    Avx2,
+    /// AVX-512 (Ice Lake's set), 16 lanes.
+    Avx512,
+}
+
+/// How many rays a pixel gets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Supersample {
+    /// One ray through the pixel's centre.
+    Off,
+    /// A regular grid of `side` x `side` rays inside the pixel, averaged in linear light.
+    Grid {
+        /// Rays along one side of the pixel: 2, 3, 4 or 5.
+        side: u32,
+    },
+}
+
+/// The curve between linear light and the 8-bit picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ToneMap {
+    /// Clamp to [0, 1].
+    None,
+    /// Khronos PBR Neutral.
+    Neutral,
+}
+
+/// All settings of one frame. Plain data: `Settings::default()` is the preset `exact`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// How visible surfaces are found.
+    pub visibility: Visibility,
+    /// Grid spacing of `subsample`, in pixels: 2, 4, 8 or 16.
+    pub stride: u32,
+    /// How `subsample` fills a matching cell.
+    pub fill: Fill,
+    /// Largest difference of any channel between corner colours that `Fill::Color` interpolates over.
+    pub match_threshold: f32,
+    /// Test the last blocker of a light first.
+    pub shadow_cache: bool,
+    /// Use the bounding volume hierarchy; off is brute force.
+    pub bvh: bool,
+    /// Cached sphere terms.
+    pub sphere_cache: SphereCache,
+    /// Instruction set.
+    pub simd: SimdLevel,
+    /// Worker threads: 0 all cores, n > 0 that many, -n leaves n cores free.
+    pub threads: i32,
+    /// Rays a pixel.
+    pub supersample: Supersample,
+    /// Trace shadow rays.
+    pub shadows: bool,
+    /// Trace reflected rays.
+    pub reflections: bool,
+    /// Trace refracted rays.
+    pub refractions: bool,
+    /// Most rays on a path, the primary included; `None` is the scene's own.
+    pub depth: Option<u32>,
+    /// Secondary rays whose largest weight is below this are not traced.
+    pub min_weight: f32,
+    /// Tone curve of the 8-bit picture.
+    pub tone_map: ToneMap,
+    /// Exposure in stops, applied before the tone curve.
+    pub exposure: f32,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self::exact()
+    }
+}
+
+impl Settings {
+    /// The preset `exact`: the reference picture, every exact optimisation on.
+    pub fn exact() -> Self {
+        Self {
+            visibility: Visibility::Full,
+            stride: 8,
+            fill: Fill::Hit,
+            match_threshold: 16.0 / 255.0,
+            shadow_cache: true,
+            bvh: true,
+            sphere_cache: SphereCache::On,
+            simd: SimdLevel::Auto,
+            threads: 0,
+            supersample: Supersample::Off,
+            shadows: true,
+            reflections: true,
+            refractions: true,
+            depth: None,
+            min_weight: 0.0,
+            tone_map: ToneMap::None,
+            exposure: 0.0,
+        }
+    }
+
+    /// The preset `balanced`: where the window starts. Cells whose corners agree are interpolated.
+    pub fn balanced() -> Self {
+        Self {
+            visibility: Visibility::Subsample,
+            fill: Fill::Color,
+            stride: 4,
+            min_weight: 1.0 / 512.0,
+            ..Self::exact()
+        }
+    }
+
+    /// The preset `fast`: as `balanced` on a coarser grid.
+    pub fn fast() -> Self {
+        Self { stride: 8, match_threshold: 32.0 / 255.0, ..Self::balanced() }
+    }
+}
+
+/// A named set of settings.
+pub struct Preset {
+    /// Name on the command line and in the overlay.
+    pub name: &'static str,
+    /// One line of help.
+    pub help: &'static str,
+    /// Makes the settings.
+    pub settings: fn() -> Settings,
+}
+
+/// The presets, best picture first.
+pub const PRESETS: &[Preset] = &[
+    Preset {
+        name: "exact",
+        help: "the reference picture; every optimisation that keeps its bits",
+        settings: Settings::exact,
+    },
+    Preset {
+        name: "balanced",
+        help: "subsampling on a fine grid, colours interpolated where corners agree",
+        settings: Settings::balanced,
+    },
+    Preset { name: "fast", help: "as balanced, on a coarser grid", settings: Settings::fast },
+];
+
+/// What a value of a setting promises about the picture, against the default of `exact`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Promise {
+    /// Every value of every channel keeps its bits.
+    SamePixels,
+    /// An approximation of the same picture.
+    Approximate,
+    /// Another picture by intent.
+    Different,
+}
+
+impl fmt::Display for Promise {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::SamePixels => "same pixels",
+            Self::Approximate => "approximate",
+            Self::Different => "different picture",
+        })
+    }
+}
+
+/// One value that a choice row can take.
+pub struct Choice {
+    /// Its name on the command line.
+    pub value: &'static str,
+    /// What it promises.
+    pub promise: Promise,
+}
+
+/// What values a row takes.
+pub enum Kind {
+    /// One of a few names; `on`/`off` rows are shown as a check box.
+    Choice(&'static [Choice]),
+    /// A number within a range.
+    Number {
+        /// Least value.
+        min: f64,
+        /// Greatest value.
+        max: f64,
+        /// Only whole numbers.
+        integer: bool,
+        /// What changing it promises.
+        promise: Promise,
+    },
+}
+
+/// One setting: its name, its help, the values it takes, and how to read and write it as text.
+pub struct Row {
+    /// Name of the flag, without dashes.
+    pub name: &'static str,
+    /// One line of help.
+    pub help: &'static str,
+    /// Allowed values.
+    pub kind: Kind,
+    /// The current value as it would be typed.
+    pub get: fn(&Settings) -> String,
+    /// Sets the value from text; the error says what is allowed.
+    pub set: fn(&mut Settings, &str) -> Result<(), String>,
+}
+
+impl Row {
+    /// The promise of `value`; `None` when the row does not know the value.
+    pub fn promise(&self, value: &str) -> Option<Promise> {
+        match &self.kind {
+            Kind::Choice(choices) => choices.iter().find(|c| c.value == value).map(|c| c.promise),
+            Kind::Number { promise, .. } => Some(*promise),
+        }
+    }
+}
+
+/// Looks a row up by its flag name.
+pub fn row(name: &str) -> Option<&'static Row> {
+    ROWS.iter().find(|r| r.name == name)
+}
+
+const fn same(value: &'static str) -> Choice {
+    Choice { value, promise: Promise::SamePixels }
+}
+const fn approximate(value: &'static str) -> Choice {
+    Choice { value, promise: Promise::Approximate }
+}
+const fn different(value: &'static str) -> Choice {
+    Choice { value, promise: Promise::Different }
+}
+
+const ON_OFF_SAME: Kind = Kind::Choice(&[same("on"), same("off")]);
+const ON_OFF_DIFFERENT: Kind = Kind::Choice(&[same("on"), different("off")]);
+
+/// A row whose values are the variants of an enum.
+macro_rules! choice_row {
+    ($name:literal, $help:literal, $field:ident, [$($value:literal => $variant:expr, $promise:ident);+ $(;)?]) => {
+        Row {
+            name: $name,
+            help: $help,
+            kind: Kind::Choice(&[$($promise($value)),+]),
+            get: |s| {
+                $(if s.$field == $variant { return $value.to_owned(); })+
+                unreachable!("every variant has a name")
+            },
+            set: |s, text| {
+                $(if text == $value { s.$field = $variant; return Ok(()); })+
+                Err(format!("expected one of {}", [$($value),+].join(", ")))
+            },
+        }
+    };
+}
+
+/// A row that is on or off.
+macro_rules! switch_row {
+    ($name:literal, $help:literal, $field:ident, $kind:expr) => {
+        Row {
+            name: $name,
+            help: $help,
+            kind: $kind,
+            get: |s| (if s.$field { "on" } else { "off" }).to_owned(),
+            set: |s, text| {
+                s.$field = match text {
+                    "on" => true,
+                    "off" => false,
+                    _ => return Err("expected on or off".to_owned()),
+                };
+                Ok(())
+            },
+        }
+    };
+}
+
+/// Every setting, in the order in which people meet them.
+pub const ROWS: &[Row] = &[
+    choice_row!("visibility", "how visible surfaces are found: full traces every pixel, subsample a grid whose matching cells are filled in",
+        visibility, ["full" => Visibility::Full, same; "subsample" => Visibility::Subsample, approximate]),
+    choice_row!("stride", "grid of subsample, in pixels",
+        stride, ["8" => 8, approximate; "2" => 2, approximate; "4" => 4, approximate; "16" => 16, approximate]),
+    choice_row!("fill", "how a matching cell is filled: hit re-uses the primitive and shades every pixel, color interpolates colours",
+        fill, ["hit" => Fill::Hit, approximate; "color" => Fill::Color, approximate]),
+    Row {
+        name: "match-threshold",
+        help: "corner colours farther apart than this split a cell of fill color; a number or a fraction such as 16/255",
+        kind: Kind::Number { min: 0.0, max: 1.0, integer: false, promise: Promise::Approximate },
+        get: |s| s.match_threshold.to_string(),
+        set: |s, text| number(text, 0.0, 1.0).map(|v| s.match_threshold = v as f32),
+    },
+    switch_row!("shadow-cache", "test the last blocker of a light before anything else", shadow_cache, ON_OFF_SAME),
+    switch_row!("bvh", "bounding volume hierarchy; off tests every primitive", bvh, ON_OFF_SAME),
+    choice_row!("sphere-cache", "sphere terms computed once per common ray origin; thesis caches |C-O|^2 - r^2, which cancels far away",
+        sphere_cache, ["on" => SphereCache::On, same; "off" => SphereCache::Off, same; "thesis" => SphereCache::Thesis, approximate]),
+    choice_row!("simd", "instruction set of the kernels",
+        simd, ["auto" => SimdLevel::Auto, same; "off" => SimdLevel::Off, same; "sse4" => SimdLevel::Sse4, same;
+               "avx2" => SimdLevel::Avx2, same; "avx512" => SimdLevel::Avx512, same]),
+    Row {
+        name: "threads",
+        help: "worker threads: 0 all cores, N that many, -N leaves N cores free",
+        kind: Kind::Number { min: -1024.0, max: 1024.0, integer: true, promise: Promise::SamePixels },
+        get: |s| s.threads.to_string(),
+        set: |s, text| integer(text, -1024, 1024).map(|v| s.threads = v as i32),
+    },
+    choice_row!("supersample", "rays a pixel, on a regular grid",
+        supersample, ["off" => Supersample::Off, same; "4" => Supersample::Grid { side: 2 }, different;
+                      "9" => Supersample::Grid { side: 3 }, different; "16" => Supersample::Grid { side: 4 }, different;
+                      "25" => Supersample::Grid { side: 5 }, different]),
+    switch_row!("shadows", "shadow rays", shadows, ON_OFF_DIFFERENT),
+    switch_row!("reflections", "mirror rays", reflections, ON_OFF_DIFFERENT),
+    switch_row!("refractions", "rays through transparent things", refractions, ON_OFF_DIFFERENT),
+    Row {
+        name: "depth",
+        help: "most rays on a path, the primary included (default: the scene's, else 5)",
+        kind: Kind::Number { min: 1.0, max: 64.0, integer: true, promise: Promise::Different },
+        get: |s| s.depth.map_or_else(|| "scene".to_owned(), |d| d.to_string()),
+        set: |s, text| {
+            s.depth = if text == "scene" { None } else { Some(integer(text, 1, 64)? as u32) };
+            Ok(())
+        },
+    },
+    Row {
+        name: "min-weight",
+        help: "secondary rays that weigh less are not traced",
+        kind: Kind::Number { min: 0.0, max: 1.0, integer: false, promise: Promise::Approximate },
+        get: |s| s.min_weight.to_string(),
+        set: |s, text| number(text, 0.0, 1.0).map(|v| s.min_weight = v as f32),
+    },
+    choice_row!("tone-map", "curve between linear light and the 8-bit picture: none clamps, neutral is Khronos PBR Neutral",
+        tone_map, ["none" => ToneMap::None, same; "neutral" => ToneMap::Neutral, different]),
+    Row {
+        name: "exposure",
+        help: "stops of exposure before the tone curve",
+        kind: Kind::Number { min: -20.0, max: 20.0, integer: false, promise: Promise::Different },
+        get: |s| s.exposure.to_string(),
+        set: |s, text| number(text, -20.0, 20.0).map(|v| s.exposure = v as f32),
+    },
+];
+
+/// A number, or a fraction `a/b`, within `[min, max]`.
+fn number(text: &str, min: f64, max: f64) -> Result<f64, String> {
+    let value = match text.split_once('/') {
+        Some((a, b)) => a.trim().parse::<f64>().ok().zip(b.trim().parse::<f64>().ok()).map(|(a, b)| a / b),
+        None => text.parse::<f64>().ok(),
+    };
+    value.filter(|v| (min..=max).contains(v)).ok_or_else(|| format!("expected a number from {min} to {max}"))
+}
+
+/// A whole number within `[min, max]`.
+fn integer(text: &str, min: i64, max: i64) -> Result<i64, String> {
+    text.parse::<i64>()
+        .ok()
+        .filter(|v| (min..=max).contains(v))
+        .ok_or_else(|| format!("expected a whole number from {min} to {max}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_every_value_survives_a_round_trip() {
+        for (i, row) in ROWS.iter().enumerate() {
+            assert!(ROWS[..i].iter().all(|r| r.name != row.name), "{} twice", row.name);
+            for preset in PRESETS {
+                let settings = (preset.settings)();
+                let text = (row.get)(&settings);
+                let mut copy = settings.clone();
+                (row.set)(&mut copy, &text).expect("a printed value can be typed");
+                assert_eq!(copy, settings, "{} = {text}", row.name);
+            }
+            if let Kind::Choice(choices) = &row.kind {
+                for choice in *choices {
+                    let mut settings = Settings::default();
+                    (row.set)(&mut settings, choice.value).expect("a listed value is accepted");
+                    assert_eq!((row.get)(&settings), choice.value);
+                }
+            }
+            assert!((row.set)(&mut Settings::default(), "nonsense").is_err());
+        }
+    }
+
+    #[test]
+    fn numbers_outside_their_range_are_refused() {
+        let threshold = row("match-threshold").expect("it is listed");
+        let mut settings = Settings::default();
+        assert!((threshold.set)(&mut settings, "16/255").is_ok());
+        for bad in ["-1", "2", "nan", "1/0", "inf", ""] {
+            assert!((threshold.set)(&mut settings, bad).is_err(), "{bad}");
+        }
+    }
+}
