@@ -188,3 +188,126 @@ fn add_mesh(mesh: &MeshDesc, placement: &Placement, parts: &mut ObjectParts) -> 
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Part;
+    use crate::scene::Limits;
+    use crate::scene::desc::SceneDesc;
+    use crate::scene::files::Files;
+    use glam::{DAffine3, DVec2};
+
+    /// The parts of one object under a transform.
+    fn parts_of(shape: ShapeDesc, transform: Option<DAffine3>) -> Vec<Part> {
+        let limits = Limits::default();
+        let mut builder = SceneBuilder::new("test", Files::embedded(&[], &limits), limits);
+        let object = ObjectDesc { at: At(0), kind: "shape", name: None, material: None, transform, shape };
+        let scene = SceneDesc { objects: vec![object], ..SceneDesc::default() };
+        builder.add(scene, &mut Warnings::default()).unwrap();
+        builder.parts
+    }
+
+    fn triangle(part: &Part) -> [Vec3; 3] {
+        match part.shape {
+            Shape::Triangle { vertices } => vertices,
+            other => panic!("expected a triangle, found {other:?}"),
+        }
+    }
+
+    fn normal([a, b, c]: [Vec3; 3]) -> Vec3 {
+        (b - a).cross(c - a).normalize()
+    }
+
+    fn mirrored() -> Option<DAffine3> {
+        Some(DAffine3::from_scale(DVec3::new(-1.0, 2.0, 3.0)))
+    }
+
+    #[test]
+    fn box_faces_wind_outward_and_are_numbered_by_axis() {
+        for transform in [None, mirrored()] {
+            let parts = parts_of(ShapeDesc::Box { min: DVec3::splat(-1.0), max: DVec3::ONE }, transform);
+            let numbers: Vec<u32> = parts.iter().map(|p| p.id.primitive).collect();
+            assert_eq!(numbers, [0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5]);
+            let mut outward = [Vec3::NEG_X, Vec3::X, Vec3::NEG_Y, Vec3::Y, Vec3::NEG_Z, Vec3::Z];
+            if transform.is_some() {
+                outward.swap(0, 1);
+            }
+            for part in &parts {
+                assert_eq!(normal(triangle(part)), outward[part.id.primitive as usize], "{part:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_rectangle_is_one_primitive_that_faces_along_u_cross_v() {
+        let (corner, edge_u, edge_v) = (DVec3::ONE, DVec3::X * 2.0, DVec3::Z * 3.0);
+        let parts = parts_of(ShapeDesc::Rectangle { corner, edge_u, edge_v }, None);
+        assert_eq!(parts.len(), 2);
+        let area: f32 = parts
+            .iter()
+            .map(|part| {
+                let [a, b, c] = triangle(part);
+                assert_eq!(part.id.primitive, 0);
+                assert_eq!(normal([a, b, c]), Vec3::NEG_Y);
+                (b - a).cross(c - a).length() / 2.0
+            })
+            .sum();
+        assert_eq!(area, 6.0);
+    }
+
+    #[test]
+    fn caps_face_outward_and_a_tip_has_none() {
+        let cone = |radius, radius_top, capped| {
+            let shape = ShapeDesc::Cone { base: DVec3::ZERO, top: DVec3::Y, radius, radius_top, capped };
+            parts_of(shape, Some(DAffine3::from_scale(DVec3::new(-2.0, 2.0, 2.0))))
+        };
+        let disks = |parts: &[Part]| -> Vec<(u32, Vec3, Vec3, f32)> {
+            let disk = |part: &Part| match part.shape {
+                Shape::Disk { center, normal, radius } => Some((part.id.primitive, center, normal, radius)),
+                _ => None,
+            };
+            parts.iter().filter_map(disk).collect()
+        };
+        let (base, top) = ((1, Vec3::ZERO, Vec3::NEG_Y, 2.0), (2, Vec3::Y * 2.0, Vec3::Y, 1.0));
+        let capped = cone(1.0, 0.5, true);
+        assert_eq!(
+            capped[0].shape,
+            Shape::Cone { base: Vec3::ZERO, top: Vec3::Y * 2.0, radius_base: 2.0, radius_top: 1.0 }
+        );
+        assert_eq!(disks(&capped), [base, top]);
+        assert_eq!(disks(&cone(1.0, 0.0, true)), [base]);
+        assert_eq!(disks(&cone(0.0, 0.5, true)), [top]);
+        assert_eq!(disks(&cone(1.0, 0.5, false)), []);
+    }
+
+    #[test]
+    fn a_mirrored_mesh_keeps_its_outside_and_its_corners_their_data() {
+        let mesh = MeshDesc {
+            vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+            triangles: vec![[0, 0, 1], [0, 1, 2]],
+            normals: vec![DVec3::Z, DVec3::new(1.0, 0.0, 1.0), DVec3::new(0.0, 1.0, 1.0)],
+            uvs: vec![DVec2::ZERO, DVec2::X, DVec2::Y],
+        };
+        let plain = parts_of(ShapeDesc::Mesh(mesh.clone()), None);
+        let turned = parts_of(ShapeDesc::Mesh(mesh), mirrored());
+        for parts in [&plain, &turned] {
+            // The first triangle has no area; the second keeps its number.
+            let [part] = &parts[..] else { panic!("one triangle is left") };
+            assert_eq!(part.id.primitive, 1);
+            assert_eq!(normal(triangle(part)), Vec3::Z);
+        }
+        let (plain, turned) = (plain[0].attributes.unwrap(), turned[0].attributes.unwrap());
+        let ([a, b, c], [x, y, z]) = (plain.uvs.unwrap(), turned.uvs.unwrap());
+        assert_eq!([x, z, y], [a, b, c]);
+        let leaning = turned.normals.unwrap()[2];
+        assert!(leaning.abs_diff_eq(Vec3::new(-1.0, 0.0, 1.0 / 3.0).normalize(), 1e-6), "{leaning}");
+    }
+
+    #[test]
+    fn a_planes_solid_side_follows_a_mirror() {
+        let plane = ShapeDesc::Plane { point: DVec3::X, normal: DVec3::X };
+        let [part] = parts_of(plane, mirrored())[..] else { panic!("one plane") };
+        assert_eq!(part.shape, Shape::Plane { point: Vec3::NEG_X, normal: Vec3::NEG_X });
+    }
+}
