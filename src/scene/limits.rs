@@ -66,7 +66,7 @@ const ROWS: &[Row] = &[
         ceiling: u32::MAX as u64 - 1,
         field: |l| &mut l.primitives,
     },
-    Row { name: "nesting", help: "levels of nesting", default: 128, ceiling: 512, field: |l| &mut l.nesting },
+    Row { name: "nesting", help: "levels of nesting", default: 128, ceiling: 256, field: |l| &mut l.nesting },
     Row {
         name: "picture-edge",
         help: "width and height of the picture",
@@ -144,7 +144,7 @@ mod tests {
         let mut limits = Limits::default();
         assert!(limits.set("speed", "1").unwrap_err().contains("file-bytes"));
         for value in ["", "0", "-1", "x", "1e9"] {
-            assert!(limits.set("nesting", value).unwrap_err().contains("from 1 to 512"), "{value}");
+            assert!(limits.set("nesting", value).unwrap_err().contains("from 1 to 256"), "{value}");
         }
         assert_eq!(limits, Limits::default());
     }
