@@ -286,10 +286,11 @@ fn unknown_keys_are_warned_of_and_strict_makes_that_an_error() {
 
 #[test]
 fn keys_without_effect_are_warned_of() {
-    let text = r##"{ "version": 1, "materials": { "m": { "base_color": 1, "color": "#ff0000" } },
+    let text = r##"{ "version": 1, "materials": { "m": { "base_color": 1, "color": "#ff0000",
+        "emission": { "texture": "t", "size": 2 } } }, "textures": { "t": { "checker": [0, 1] } },
         "objects": [ { "type": "group", "material": "m" } ] }"##;
     let pointers: Vec<String> = load_text(text).unwrap().warnings.into_iter().map(|w| w.place.pointer).collect();
-    assert_eq!(pointers, ["/materials/m/color", "/objects/0/material"]);
+    assert_eq!(pointers, ["/materials/m/color", "/materials/m/emission/size", "/objects/0/material"]);
 }
 
 #[test]
@@ -302,8 +303,8 @@ fn an_exceeded_limit_is_named_and_can_be_raised() {
     let error = load_text(deep(70)).unwrap_err().to_string();
     assert!(error.contains("limit nesting of 128"), "{error}");
     let mut raised = LoadOptions::default();
-    raised.limits.set("nesting", "512").unwrap();
-    Folder::new().load(deep(250), &raised).unwrap();
+    raised.limits.set("nesting", "256").unwrap();
+    Folder::new().load(deep(126), &raised).unwrap();
     assert!(Folder::new().load(deep(100_000), &raised).is_err());
 
     let spheres = |n: usize| {
@@ -361,7 +362,7 @@ fn mutated_scenes_never_panic() {
     const TOKENS: [&[u8]; 12] =
         [b"{", b"}", b"[", b"]", b"\"", b",", b"-", b"1e39", b"null", b"0", b"[]", b"\"texture\":"];
     let mut accepted = 0;
-    for _ in 0..3000 {
+    for _ in 0..2000 {
         let mut bytes = VALID.as_bytes().to_vec();
         for _ in 0..=random(3) {
             let at = random(bytes.len());
@@ -380,5 +381,5 @@ fn mutated_scenes_never_panic() {
         }
         accepted += usize::from(folder.load(&bytes, &LoadOptions::default()).is_ok());
     }
-    assert!((1..3000).contains(&accepted), "{accepted} of the mutated scenes are valid");
+    assert!((1..2000).contains(&accepted), "{accepted} of the mutated scenes are valid");
 }

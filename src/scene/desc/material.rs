@@ -31,13 +31,6 @@ pub struct MaterialDesc {
     pub emission: ColorDesc,
 }
 
-impl MaterialDesc {
-    /// A material whose colours are constants.
-    pub fn constant(material: Material, color: Vec3, emission: Vec3) -> Self {
-        Self { material, color: ColorDesc::Constant(color), emission: ColorDesc::Constant(emission) }
-    }
-}
-
 /// The keys that make a material metallic-roughness; all others have Phong's reflection.
 const METALLIC_ROUGHNESS: [&str; 3] = ["base_color", "metallic", "roughness"];
 /// The keys that only Phong's reflection knows.
@@ -48,8 +41,8 @@ pub fn read<'t, N: Node<'t>>(node: N, name: String, context: &mut Context) -> Ou
     let defaults = Material::default_phong();
     let mut map = Map::open(node)?;
     let is_phong = !METALLIC_ROUGHNESS.iter().any(|key| map.has(key));
-    let (color, model) = if is_phong { phong(&mut map)? } else { metallic_roughness(&mut map, context)? };
-    let emission = map.or("emission", ColorDesc::Constant(Vec3::ZERO), color_or_texture)?;
+    let (color, model) = if is_phong { phong(&mut map, context)? } else { metallic_roughness(&mut map, context)? };
+    let emission = map.or("emission", ColorDesc::Constant(Vec3::ZERO), |node| color_or_texture(node, context))?;
     let transparency = map.or("transparency", defaults.transparency, share)?;
     let material = Material {
         name,
@@ -66,19 +59,16 @@ pub fn read<'t, N: Node<'t>>(node: N, name: String, context: &mut Context) -> Ou
     Ok(MaterialDesc { material, color, emission })
 }
 
-fn phong<'t, N: Node<'t>>(map: &mut Map<'t, N>) -> Outcome<(ColorDesc, Model)> {
-    let color = map.or("color", ColorDesc::Constant(Vec3::ONE), color_or_texture)?;
+fn phong<'t, N: Node<'t>>(map: &mut Map<'t, N>, context: &mut Context) -> Outcome<(ColorDesc, Model)> {
+    let color = map.or("color", ColorDesc::Constant(Vec3::ONE), |node| color_or_texture(node, context))?;
     let model = Model::Phong {
-        ambient: map.or("ambient", AMBIENT, weight)?,
-        diffuse: map.or("diffuse", Vec3::ONE, weight)?,
-        specular: map.or("specular", Vec3::ONE, weight)?,
-        shininess: map.or("shininess", 50.0, not_negative)?,
+        ambient: map.or("ambient", Material::AMBIENT, weight)?,
+        diffuse: map.or("diffuse", Material::DIFFUSE, weight)?,
+        specular: map.or("specular", Material::SPECULAR, weight)?,
+        shininess: map.or("shininess", Material::SHININESS, not_negative)?,
     };
     Ok((color, model))
 }
-
-/// Ambient weight of a material that gives none.
-const AMBIENT: Vec3 = Vec3::splat(0.05);
 
 /// glTF's defaults: white, metal, rough.
 fn metallic_roughness<'t, N: Node<'t>>(map: &mut Map<'t, N>, context: &mut Context) -> Outcome<(ColorDesc, Model)> {
@@ -88,19 +78,21 @@ fn metallic_roughness<'t, N: Node<'t>>(map: &mut Map<'t, N>, context: &mut Conte
             context.warnings.push(node.at(), message);
         }
     }
-    let color = map.or("base_color", ColorDesc::Constant(Vec3::ONE), color_or_texture)?;
+    let color = map.or("base_color", ColorDesc::Constant(Vec3::ONE), |node| color_or_texture(node, context))?;
     let model = Model::MetallicRoughness {
-        ambient: map.or("ambient", AMBIENT, weight)?,
+        ambient: map.or("ambient", Material::AMBIENT, weight)?,
         metallic: map.or("metallic", 1.0, number_in(0.0..=1.0))?,
         roughness: map.or("roughness", 1.0, number_in(0.0..=1.0))?,
     };
     Ok((color, model))
 }
 
-fn color_or_texture<'t, N: Node<'t>>(node: N) -> Outcome<ColorDesc> {
+fn color_or_texture<'t, N: Node<'t>>(node: N, context: &mut Context) -> Outcome<ColorDesc> {
     if node.kind() != Kind::Map {
         return color(node).map(ColorDesc::Constant);
     }
     let mut map = Map::open(node)?;
-    map.required("texture", |node| Ok(ColorDesc::Texture(NameRef { name: text(node)?, at: node.at() })))
+    let name = map.required("texture", |node| Ok(NameRef { name: text(node)?, at: node.at() }))?;
+    map.finish(&mut context.warnings);
+    Ok(ColorDesc::Texture(name))
 }
