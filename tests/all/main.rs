@@ -1,0 +1,6 @@
+//! All integration tests, in one binary: one module a subject.
+
+mod scene_errors;
+mod scene_files;
+mod scene_loading;
+mod temporary;
