@@ -27,6 +27,9 @@ const PICTURES: &[(&str, u32, Paint)] = &[
     ("waves", 384, paintings::waves),
     ("night", 256, paintings::night),
     ("circles", 256, paintings::circles),
+    ("arcs", 256, paintings::arcs),
+    ("poppies", 384, paintings::poppies),
+    ("birches", 384, paintings::birches),
 ];
 
 fn main() -> anyhow::Result<()> {

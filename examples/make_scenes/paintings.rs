@@ -178,3 +178,92 @@ pub fn circles(u: f64, v: f64) -> DVec3 {
     }
     color
 }
+
+/// Quarter arcs on square tiles, each tile turned by chance (Truchet's tiles, after Smith).
+pub fn arcs(u: f64, v: f64) -> DVec3 {
+    const TILES: f64 = 7.0;
+    let (x, y) = (u * TILES, v * TILES);
+    let (i, j) = (x as i64, y as i64);
+    let turned = hash(i, j, 51) < 0.5;
+    let (s, t) = (if turned { 1.0 - x.fract() } else { x.fract() }, y.fract());
+    let near = DVec2::new(s, t).length();
+    let far = DVec2::new(1.0 - s, 1.0 - t).length();
+    // Which of the two sides of the arcs a corner lies on alternates from tile to tile.
+    let inside = near < 0.5 || far < 0.5;
+    let dark = inside ^ turned ^ ((i + j) % 2 == 0);
+    let ground = if dark { rgb(0x1f5a5e) } else { rgb(0xe9dcc0) };
+    let line = (near - 0.5).abs().min((far - 0.5).abs());
+    let warmth = fractal(u, v, 3, 2, 52);
+    let color = if dark { ground.lerp(rgb(0x173a52), warmth) } else { ground.lerp(rgb(0xe0b877), 0.8 * warmth) };
+    if line < 0.045 { rgb(0xc2612c) } else { color }
+}
+
+/// Poppies in a field under a summer sky.
+pub fn poppies(u: f64, v: f64) -> DVec3 {
+    const HORIZON: f64 = 0.60;
+    if v > HORIZON {
+        let cloud = smoothstep(0.50, 0.72, fractal(u * 0.6 + 0.2, v, 4, 5, 61)) * smoothstep(1.1, 0.75, v);
+        let sky = ramp(&[rgb(0xcfe0e6), rgb(0x7fb0d6), rgb(0x4a86c2)], (v - HORIZON) / (1.0 - HORIZON));
+        let trees = HORIZON + 0.02 + 0.05 * fractal(u, 0.2, 10, 4, 62);
+        return if v < trees { rgb(0x3f5a3a) } else { sky.lerp(rgb(0xfbf6ea), 0.9 * cloud) };
+    }
+    let depth = v / HORIZON;
+    let mut color = ramp(&[rgb(0x4f6f2a), rgb(0x86963f), rgb(0xc9b565)], depth);
+    color *= 0.80 + 0.35 * value(u * 60.0, v * 14.0, 64, 64, 63);
+    // Rows of flowers from far to near, larger towards the bottom, so that near ones lie on top.
+    const ROWS: i64 = 16;
+    for row in (0..ROWS).rev() {
+        let height = HORIZON * libm::pow((row as f64 + 0.5) / ROWS as f64, 0.75) - 0.01;
+        let size = 0.008 + 0.045 * (1.0 - height / HORIZON);
+        let x = u / (size * 2.6) + hash(row, 0, 64) * 7.0;
+        let column = x.floor() as i64;
+        if hash(column, row, 65) < 0.35 {
+            continue;
+        }
+        let center = column as f64 + 0.3 + 0.4 * hash(column, row, 66);
+        let offset = DVec2::new((x - center) * 2.6, (v - height) / size * 1.35);
+        let petals = offset.length()
+            * (1.0 + 0.12 * libm::cos(4.0 * libm::atan2(offset.y, offset.x) + 6.0 * hash(column, row, 67)));
+        if petals < 0.22 {
+            color = rgb(0x2a1420);
+        } else if petals < 0.85 {
+            color = rgb(0xb61f1a)
+                .lerp(rgb(0xe8512c), smoothstep(-0.6, 0.7, offset.y) * (0.6 + 0.4 * hash(column, row, 68)));
+        }
+    }
+    color
+}
+
+/// Birches in blue winter light.
+pub fn birches(u: f64, v: f64) -> DVec3 {
+    /// Foot, width and lean of the trunks, far ones first; the last number is how much haze is before it.
+    const TRUNKS: &[(f64, f64, f64, f64)] = &[
+        (0.16, 0.022, 0.02, 0.70),
+        (0.44, 0.020, -0.01, 0.70),
+        (0.66, 0.024, 0.01, 0.65),
+        (0.90, 0.022, -0.02, 0.65),
+        (0.30, 0.040, -0.03, 0.35),
+        (0.78, 0.044, 0.03, 0.35),
+        (0.09, 0.070, 0.02, 0.0),
+        (0.55, 0.080, -0.03, 0.0),
+    ];
+    let haze = ramp(&[rgb(0xdfe8ee), rgb(0xa9c4d8), rgb(0x6f97bb), rgb(0x4b74a0)], v);
+    let mut color = haze
+        .lerp(rgb(0x3d628c), 0.5 * smoothstep(0.45, 0.75, fractal(u, v * 0.5, 6, 4, 71)) * smoothstep(0.15, 0.5, v));
+    if v < 0.17 + 0.03 * fractal(u, 0.1, 3, 3, 72) {
+        color = rgb(0xeef3f6).lerp(rgb(0xa9c0d6), smoothstep(0.4, 0.7, fractal(u, v, 5, 3, 73)));
+    }
+    for (number, &(foot, width, lean, far)) in TRUNKS.iter().enumerate() {
+        let ground = 0.03 + 0.14 * far / 0.7;
+        let wobble = 0.012 * (fractal(0.37, v, 3, 2, 80 + number as u32) - 0.5);
+        let across = (u - foot - lean * v - wobble) / width;
+        if v < ground || across.abs() > 0.5 {
+            continue;
+        }
+        let round = 1.0 - 1.6 * (across + 0.12) * (across + 0.12);
+        let mark = value(across * 1.6 + 3.0, v * 26.0 * (0.08 / width).min(2.0), 64, 64, 90 + number as u32);
+        let bark = rgb(0xf3efe6).lerp(rgb(0x2b2a30), 0.85 * smoothstep(0.66, 0.74, mark)) * round;
+        color = bark.lerp(haze, far);
+    }
+    color
+}
