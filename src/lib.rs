@@ -3,6 +3,7 @@
 
 pub mod settings;
 
+pub mod app;
 pub mod geometry;
 pub mod render;
 pub mod scene;
