@@ -18,9 +18,15 @@ pub fn event_loop<T: 'static>() -> Result<EventLoop<T>, AppError> {
     panic::set_hook(hook);
     match built {
         Ok(Ok(event_loop)) => Ok(event_loop),
-        Ok(Err(error)) => Err(AppError::NoDisplay(error.to_string())),
+        Ok(Err(error)) => Err(AppError::NoDisplay(without_place(&error.to_string()).to_owned())),
         Err(panic) => Err(AppError::NoDisplay(panic_message(panic.as_ref()))),
     }
+}
+
+/// winit's messages begin with the line of its source that made them: of no use to a reader of ours.
+fn without_place(message: &str) -> &str {
+    let place_end = message.find(".rs:").and_then(|at| message[at..].find(": ").map(|end| at + end + 2));
+    place_end.map_or(message, |end| &message[end..])
 }
 
 fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
@@ -51,6 +57,12 @@ fn choose_server<T: 'static>(_builder: &mut EventLoopBuilder<T>) {}
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_place_in_winits_source_is_left_out() {
+        assert_eq!(without_place("os error at /x/mod.rs:765: DISPLAY is not set: none"), "DISPLAY is not set: none");
+        assert_eq!(without_place("not supported"), "not supported");
+    }
 
     #[test]
     fn a_panic_becomes_one_line() {

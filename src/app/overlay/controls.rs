@@ -10,9 +10,10 @@ const WIDEST_SLIDER: f64 = 128.0;
 
 /// One row per setting: name, control, and what the value promises.
 pub fn settings(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
+    let mut settings = view.settings.clone();
     Grid::new("settings").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
         for row in ROWS {
-            let value = (row.get)(view.settings);
+            let value = (row.get)(&settings);
             let name = ui.label(RichText::new(row.name).color(theme::WEAK)).on_hover_text(row.help);
             let (response, wanted) = control(ui, row, &value, view);
             response.labelled_by(name.id).on_hover_text(row.help);
@@ -20,13 +21,15 @@ pub fn settings(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
                 ui.label(RichText::new(promise.to_string()).small().color(theme::promise_color(promise)));
             }
             ui.end_row();
-            // The control offers allowed values only; should the row still refuse, nothing changes.
-            let mut settings = view.settings.clone();
-            if wanted.is_some_and(|wanted| (row.set)(&mut settings, &wanted).is_ok()) {
-                changes.push(Change::Settings(settings));
+            if let Some(wanted) = wanted {
+                // The control offers allowed values only; should the row still refuse, the value stays.
+                let _ = (row.set)(&mut settings, &wanted);
             }
         }
     });
+    if settings != *view.settings {
+        changes.push(Change::Settings(settings));
+    }
 }
 
 /// The control of a row, and the value that was asked for, as it would be typed.
@@ -66,8 +69,8 @@ fn number(ui: &mut Ui, value: &str, min: f64, max: f64, integer: bool, view: &Vi
     } else {
         let slider = Slider::new(&mut after, min..=max);
         // Ranges from zero are those of thresholds and weights, where the small values matter.
-        let slider = if integer { slider.integer() } else { slider.logarithmic(min == 0.0).max_decimals(4) };
-        ui.add(slider.smallest_positive(1e-4))
+        let slider = if integer { slider.integer() } else { slider.logarithmic(min == 0.0).smallest_positive(1e-4) };
+        ui.add(slider.custom_formatter(|value, _| rounded(value)))
     };
     let wanted = (response.changed() && after != before).then(|| after.to_string());
     (response, wanted)
@@ -95,12 +98,13 @@ pub fn view(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
         .then(|| changes.push(Change::Speed(speed)));
         let mut fov = view.fov;
         labelled(ui, "field of view", "vertical, in degrees", |ui| {
-            ui.add(Slider::new(&mut fov, FOV_RANGE).max_decimals(1).suffix("°"))
+            ui.add(Slider::new(&mut fov, FOV_RANGE).custom_formatter(|fov, _| rounded(fov)).suffix("°"))
         })
         .then(|| changes.push(Change::Fov(fov)));
         let mut sensitivity = view.sensitivity;
         labelled(ui, "mouse", "degrees of turn per count of the mouse", |ui| {
-            ui.add(Slider::new(&mut sensitivity, 0.01..=1.0).logarithmic(true).max_decimals(3).suffix("°"))
+            let slider = Slider::new(&mut sensitivity, 0.01..=1.0).logarithmic(true).suffix("°");
+            ui.add(slider.custom_formatter(|sensitivity, _| rounded(sensitivity)))
         })
         .then(|| changes.push(Change::Sensitivity(sensitivity)));
         let mut invert = view.invert_look;
@@ -117,6 +121,11 @@ fn labelled(ui: &mut Ui, name: &str, help: &str, add: impl FnOnce(&mut Ui) -> Re
     response.changed()
 }
 
+/// At most four decimals. A formatter and not the widget's own rounding, which would change a value by showing it.
+fn rounded(value: f64) -> String {
+    ((value * 1e4).round() / 1e4).to_string()
+}
+
 /// Three significant figures, whatever the size of the scene.
 fn significant(value: f64) -> String {
     let digits = if value > 0.0 { (2.0 - value.log10().floor()).clamp(0.0, 9.0) as usize } else { 2 };
@@ -125,7 +134,14 @@ fn significant(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::significant;
+    use super::{rounded, significant};
+
+    #[test]
+    fn values_show_four_decimals_at_most() {
+        for (value, text) in [(16.0 / 255.0, "0.0627"), (1.0 / 512.0, "0.002"), (60.0, "60"), (-0.5, "-0.5")] {
+            assert_eq!(rounded(value), text);
+        }
+    }
 
     #[test]
     fn speeds_show_three_figures() {

@@ -92,6 +92,7 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
     let available = ui.ctx().content_rect();
     egui::Area::new(egui::Id::unique("overlay"))
         .fixed_pos(available.min + egui::vec2(MARGIN, MARGIN))
+        .default_size(available.size())
         .constrain(false)
         .show(ui.ctx(), |ui| {
             let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(10.0).corner_radius(6.0);

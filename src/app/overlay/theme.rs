@@ -50,7 +50,7 @@ pub fn apply(context: &egui::Context) {
         style.spacing.item_spacing = egui::vec2(8.0, 5.0);
         style.spacing.slider_width = 84.0;
         style.spacing.combo_width = 132.0;
-        style.spacing.indent = 10.0;
+        style.spacing.indent = 16.0;
         style.interaction.tooltip_delay = 0.3;
     });
 }
