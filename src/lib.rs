@@ -3,7 +3,10 @@
 
 pub mod settings;
 
-pub mod app;
+pub mod math;
+
 pub mod geometry;
 pub mod render;
 pub mod scene;
+
+pub mod app;
