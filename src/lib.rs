@@ -8,3 +8,5 @@ pub mod math;
 pub mod geometry;
 pub mod render;
 pub mod scene;
+
+pub mod app;

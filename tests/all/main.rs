@@ -1,5 +1,7 @@
 //! All integration tests, in one binary: one module a subject.
 
+mod blit;
+mod overlay;
 mod scene_errors;
 mod scene_files;
 mod scene_loading;
