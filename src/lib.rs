@@ -4,5 +4,6 @@
 pub mod settings;
 
 pub mod geometry;
+pub mod picture;
 pub mod render;
 pub mod scene;
