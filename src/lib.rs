@@ -4,6 +4,7 @@
 pub mod settings;
 
 pub mod geometry;
+pub mod measure;
 pub mod picture;
 pub mod render;
 pub mod scene;

@@ -17,3 +17,4 @@ pub use error::PictureError;
 pub use format::{FORMATS, Format, WriteOptions};
 pub use pending_file::PendingFile;
 pub use read::{Encoding, MAX_PIXELS, Picture, read};
+pub use transfer::{srgb_decode, srgb_encode};

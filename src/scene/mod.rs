@@ -9,6 +9,7 @@ pub mod error;
 pub mod light;
 pub mod material;
 pub mod object;
+pub mod path;
 pub mod texture;
 
 pub use camera::Camera;
@@ -16,6 +17,7 @@ pub use error::{SceneError, Warning};
 pub use light::Light;
 pub use material::Material;
 pub use object::Object;
+pub use path::CameraPath;
 pub use texture::Texture;
 
 use crate::geometry::Geometry;
