@@ -74,3 +74,29 @@ pub struct FrameStats {
     /// The shadow-object cache.
     pub shadow_cache: CacheCounts,
 }
+
+impl FrameStats {
+    /// Adds another's counts and stage times; `completed` and `frame_ms` stay.
+    pub fn add(&mut self, other: &Self) {
+        let (rays, pixels, stages, cache) =
+            (&mut self.rays, &mut self.pixels, &mut self.stages_ms, &mut self.shadow_cache);
+        rays.primary += other.rays.primary;
+        rays.shadow += other.rays.shadow;
+        rays.reflection += other.rays.reflection;
+        rays.refraction += other.rays.refraction;
+        pixels.traced += other.pixels.traced;
+        pixels.resolved += other.pixels.resolved;
+        pixels.certified += other.pixels.certified;
+        pixels.interpolated += other.pixels.interpolated;
+        self.supersampled += other.supersampled;
+        stages.visibility += other.stages_ms.visibility;
+        stages.certificate += other.stages_ms.certificate;
+        stages.shadow += other.stages_ms.shadow;
+        stages.shade += other.stages_ms.shade;
+        stages.secondary += other.stages_ms.secondary;
+        stages.resolve += other.stages_ms.resolve;
+        stages.present += other.stages_ms.present;
+        cache.queries += other.shadow_cache.queries;
+        cache.hits += other.shadow_cache.hits;
+    }
+}
