@@ -25,7 +25,8 @@ impl SceneCounts {
     /// Counts `scene`.
     pub fn of(scene: &Scene) -> Self {
         let texels: usize = scene.textures.iter().map(texture_bytes).sum();
-        let tables = scene.objects.capacity() * size_of::<Object>() + scene.materials.capacity() * size_of::<Material>();
+        let tables =
+            scene.objects.capacity() * size_of::<Object>() + scene.materials.capacity() * size_of::<Material>();
         Self {
             scene_bytes: (texels + tables) as u64,
             triangles: 0,
@@ -40,7 +41,7 @@ impl SceneCounts {
 fn texture_bytes(texture: &Texture) -> usize {
     size_of::<Texture>()
         + match texture {
-            Texture::Image(image) => image.texels.capacity() * 3,
+            Texture::Image(image) => image.texels.len() * 3,
             Texture::Checker { .. } => 0,
         }
 }

@@ -116,7 +116,10 @@ mod tests {
     fn counts_and_times_are_means_per_frame() {
         let run = run(&[10, 13]);
         assert_eq!(run.frames(), 2);
-        assert_eq!(run.per_frame(&run.total().rays), json!({ "primary": 11.5, "shadow": 0, "reflection": 0, "refraction": 0 }));
+        assert_eq!(
+            run.per_frame(&run.total().rays),
+            json!({ "primary": 11.5, "shadow": 0, "reflection": 0, "refraction": 0 })
+        );
         assert_eq!(run.per_frame(&run.total().stages_ms)["shade"], json!(0.5));
         assert_eq!(run.per_frame(&run.total().rays.primary), json!(11.5));
         assert_eq!((run.frame_ms().median, run.cpu_ms().min), (10.5, 20.0));

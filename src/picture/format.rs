@@ -107,14 +107,14 @@ impl Format {
         }
     }
 
-    /// Writes an 8-bit picture; `None` when this format keeps linear colour only.
+    /// Writes a picture that is no film, such as a difference.
     ///
     /// # Errors
-    /// [`PictureError::Encode`] with the encoder's or the sink's reason.
-    pub fn write_eight_bit(&self, picture: &EightBit, sink: &mut dyn Sink) -> Option<Result<(), PictureError>> {
+    /// [`PictureError::Encode`] with the encoder's or the sink's reason, or because this format keeps linear colour.
+    pub fn write_eight_bit(&self, picture: &EightBit, sink: &mut dyn Sink) -> Result<(), PictureError> {
         match self.encoder {
-            Encoder::EightBit(encode) => Some(encode(picture, WriteOptions::default(), sink)),
-            Encoder::Linear(_) => None,
+            Encoder::EightBit(encode) => encode(picture, WriteOptions::default(), sink),
+            Encoder::Linear(_) => Err(PictureError::Encode("this format keeps linear colour only".to_owned())),
         }
     }
 }
