@@ -3,6 +3,8 @@
 
 pub mod settings;
 
+pub mod math;
+
 pub mod geometry;
 pub mod measure;
 pub mod picture;

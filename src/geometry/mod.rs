@@ -1,19 +1,227 @@
 //! What a ray can meet and how to find it. This room knows no colour.
+//!
+//! [`Geometry`] holds every primitive in [`Block`]s of one type and a tree over them; [`traverse`](Geometry::traverse)
+//! is the one text that finds closest hits and occluders, with what to do about a hit left to a [`Visitor`].
 
 pub mod aabb;
+pub mod block;
+pub mod bvh;
+pub mod packet;
+pub mod primitive;
 pub mod shape;
+pub mod traverse;
+pub mod visitor;
 
 pub use aabb::Aabb;
+pub use block::{BLOCK, Block, NO_PRIMITIVE, PrimitiveIndex};
+pub use packet::Packet;
 pub use shape::{Part, PrimitiveId, Shape, VertexAttributes};
+pub use traverse::{Search, SphereTerms, Stack};
+pub use visitor::{AnyHit, ClosestHit, NextCrossing, Opaque, Visitor};
 
-/// All shapes of a scene, sorted by type, and the tree over them.
-#[derive(Debug)]
-pub struct Geometry {}
+use bvh::{Bvh, Leaf};
+use primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
+
+/// Where a primitive lies: its type, its block and its place there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slot {
+    /// Its type.
+    pub kind: PrimitiveKind,
+    /// Index among the blocks of its type.
+    pub block: u32,
+    /// Place within the block.
+    pub place: u8,
+}
+
+macro_rules! define_geometry {
+    ($($kernel:ident $fields:literal $blocks:ident,)+) => {
+        /// The types of primitives.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum PrimitiveKind {
+            $(#[doc = concat!("A ", stringify!($kernel), ".")] $kernel,)+
+        }
+
+        impl PrimitiveKind {
+            /// Every type.
+            pub const ALL: &[Self] = &[$(Self::$kernel,)+];
+        }
+
+        /// All shapes of a scene, sorted by type, and the tree over them.
+        #[derive(Debug, Default)]
+        pub struct Geometry {
+            $(#[doc = concat!("Blocks of type ", stringify!($kernel), ".")] pub $blocks: Vec<Block<$fields>>,)+
+            /// Identity of each primitive, ascending.
+            pub ids: Vec<PrimitiveId>,
+            /// Where each primitive lies.
+            pub slots: Vec<Slot>,
+            /// What the corners of triangles carry, in the kernel's order of corners, for those primitives that carry
+            /// anything. Sorted by primitive.
+            pub attributes: Vec<(PrimitiveIndex, VertexAttributes)>,
+            /// Finite bounds of everything but planes; empty if there is nothing finite.
+            pub bounds: Aabb,
+            /// The tree, where the scene is worth one.
+            pub bvh: Option<Bvh>,
+            /// Shapes without extent that were left out.
+            pub dropped: usize,
+        }
+
+        impl Geometry {
+            /// Bounds of one primitive.
+            pub fn bounds_of(&self, primitive: PrimitiveIndex) -> Aabb {
+                let slot = self.slots[primitive as usize];
+                match slot.kind {
+                    $(PrimitiveKind::$kernel =>
+                        self.$blocks[slot.block as usize].bounds_of::<$kernel>(usize::from(slot.place)),)+
+                }
+            }
+
+            /// How many primitives of a type there are.
+            pub fn count(&self, kind: PrimitiveKind) -> usize {
+                match kind {
+                    $(PrimitiveKind::$kernel => self.$blocks.iter().map(|b| b.len as usize).sum(),)+
+                }
+            }
+
+            /// How many blocks of a type there are.
+            pub fn blocks_of(&self, kind: PrimitiveKind) -> usize {
+                match kind {
+                    $(PrimitiveKind::$kernel => self.$blocks.len(),)+
+                }
+            }
+
+            /// Bytes held, by capacity.
+            pub fn bytes(&self) -> usize {
+                let blocks = 0 $(+ self.$blocks.capacity() * size_of::<Block<$fields>>())+;
+                blocks
+                    + self.ids.capacity() * size_of::<PrimitiveId>()
+                    + self.slots.capacity() * size_of::<Slot>()
+                    + self.attributes.capacity() * size_of::<(PrimitiveIndex, VertexAttributes)>()
+                    + self.bvh.as_ref().map_or(0, Bvh::bytes)
+            }
+
+            /// Puts the packed primitives of a leaf into a new block of their type.
+            fn push_block(&mut self, kind: PrimitiveKind, members: &[PrimitiveIndex], packed: &[Packed]) -> Leaf {
+                match kind {
+                    $(PrimitiveKind::$kernel => {
+                        let mut block = Block::<$fields>::EMPTY;
+                        let number = self.$blocks.len() as u32;
+                        for &member in members {
+                            let Packed::$kernel(fields) = &packed[member as usize] else {
+                                unreachable!("a leaf holds one type")
+                            };
+                            self.slots[member as usize] = Slot { kind, block: number, place: block.len as u8 };
+                            block.push(*fields, member);
+                        }
+                        self.$blocks.push(block);
+                        Leaf { kind, block: number }
+                    })+
+                }
+            }
+        }
+
+        /// A shape as its kernel's fields.
+        #[derive(Clone, Debug)]
+        enum Packed {
+            $($kernel([f32; $fields]),)+
+        }
+
+        impl Packed {
+            fn kind(&self) -> PrimitiveKind {
+                match self {
+                    $(Self::$kernel(_) => PrimitiveKind::$kernel,)+
+                }
+            }
+
+            fn bounds(&self) -> Aabb {
+                match self {
+                    $(Self::$kernel(fields) => $kernel::bounds(fields),)+
+                }
+            }
+        }
+    };
+}
+for_each_primitive!(define_geometry);
+
+impl Packed {
+    /// Packs a shape; `None` where it has no extent.
+    fn new(shape: &Shape) -> Option<Self> {
+        Some(match *shape {
+            Shape::Sphere { center, radius } => Self::Sphere(Sphere::fields(center, radius)),
+            Shape::Plane { point, normal } => Self::Plane(Plane::fields(point, normal)),
+            Shape::Triangle { vertices } if Triangle::is_degenerate(vertices) => return None,
+            Shape::Triangle { vertices } => Self::Triangle(Triangle::fields(vertices)),
+            Shape::Disk { center, normal, radius } => Self::Disk(Disk::fields(center, normal, radius)),
+            Shape::Cone { base, top, .. } if base == top => return None,
+            Shape::Cone { base, top, radius_base, radius_top } => {
+                Self::Cone(Cone::fields(base, top, radius_base, radius_top))
+            }
+        })
+    }
+}
+
+/// Fewer blocks than this are tested one by one: a tree would not pay.
+const MIN_BLOCKS_FOR_TREE: usize = 3;
 
 impl Geometry {
-    /// Builds kernels' data and the tree from parts in ascending order of [`PrimitiveId`].
-    /// Degenerate parts (zero area, zero length) are dropped and counted in `dropped`.
-    pub fn build(_parts: Vec<Part>) -> Self {
-        Self {}
+    /// Sorts parts into blocks and builds the tree. Parts come in ascending order of their [`PrimitiveId`];
+    /// those without extent are dropped and counted.
+    pub fn build(parts: Vec<Part>) -> Self {
+        let mut geometry = Self::default();
+        let mut packed = Vec::with_capacity(parts.len());
+        for part in parts {
+            let Some(fields) = Packed::new(&part.shape) else {
+                geometry.dropped += 1;
+                continue;
+            };
+            if let (Some(attributes), Shape::Triangle { vertices }) = (part.attributes, part.shape) {
+                let stored = attributes.reordered(Triangle::stored_order(vertices));
+                geometry.attributes.push((packed.len() as u32, stored));
+            }
+            packed.push(fields);
+            geometry.ids.push(part.id);
+        }
+        let unplaced = Slot { kind: PrimitiveKind::Plane, block: u32::MAX, place: 0 };
+        geometry.slots = vec![unplaced; packed.len()];
+
+        let (planes, finite): (Vec<u32>, Vec<u32>) =
+            (0..packed.len() as u32).partition(|&i| packed[i as usize].kind() == PrimitiveKind::Plane);
+        for members in planes.chunks(BLOCK) {
+            geometry.push_block(PrimitiveKind::Plane, members, &packed);
+        }
+        let boxes: Vec<Aabb> = finite.iter().map(|&i| packed[i as usize].bounds()).collect();
+        geometry.bounds = boxes.iter().fold(Aabb::EMPTY, |a, &b| a.union(b));
+        let kinds: Vec<PrimitiveKind> = finite.iter().map(|&i| packed[i as usize].kind()).collect();
+        let mut members = Vec::with_capacity(BLOCK);
+        let bvh = bvh::build(&boxes, &kinds, &mut |kind, local| {
+            members.clear();
+            members.extend(local.iter().map(|&l| finite[l as usize]));
+            members.sort_unstable();
+            geometry.push_block(kind, &members, &packed)
+        });
+        geometry.bvh = bvh.filter(|bvh| bvh.leaves >= MIN_BLOCKS_FOR_TREE);
+        geometry.spheres.shrink_to_fit();
+        geometry.triangles.shrink_to_fit();
+        geometry
+    }
+
+    /// How many primitives there are.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there is nothing to hit.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Largest magnitude of any coordinate of anything finite.
+    pub fn reach(&self) -> f32 {
+        if self.bounds.is_empty() { 0.0 } else { self.bounds.min.abs().max(self.bounds.max.abs()).max_element() }
+    }
+
+    /// What the corners of a triangle carry; `None` for most primitives.
+    pub fn attributes_of(&self, primitive: PrimitiveIndex) -> Option<&VertexAttributes> {
+        let found = self.attributes.binary_search_by_key(&primitive, |(index, _)| *index).ok()?;
+        Some(&self.attributes[found].1)
     }
 }

@@ -64,6 +64,13 @@ pub struct VertexAttributes {
     pub uvs: Option<[Vec2; 3]>,
 }
 
+impl VertexAttributes {
+    /// With the corners taken in another order.
+    pub(super) fn reordered(self, order: [usize; 3]) -> Self {
+        Self { normals: self.normals.map(|n| order.map(|i| n[i])), uvs: self.uvs.map(|uv| order.map(|i| uv[i])) }
+    }
+}
+
 /// One shape with its identity. Several parts may share an identity (the two triangles of a rectangle).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {

@@ -1,4 +1,8 @@
 //! The picture being made: linear colour, the 8-bit picture, and optional planes of what each pixel sees.
+//!
+//! Pixels are stored tile by tile, so that workers own disjoint tiles without locks or shared mutable memory.
+
+use super::resolve::Encoder;
 
 /// Edge of a tile in pixels. Tiles are the unit of work and of memory.
 pub const TILE: usize = 64;
@@ -16,20 +20,73 @@ pub struct Planes {
     pub primitive: bool,
 }
 
+impl Planes {
+    /// Whether any plane is kept.
+    pub fn any(self) -> bool {
+        self.depth || self.normal || self.object || self.primitive
+    }
+}
+
+/// One tile's pixels, row by row; planes that the film does not keep are empty.
+#[derive(Debug, Default)]
+pub(super) struct FilmTile {
+    pub x: usize,
+    pub y: usize,
+    pub width: usize,
+    pub height: usize,
+    pub color: Vec<[f32; 3]>,
+    pub rgba: Vec<[u8; 4]>,
+    pub depth: Vec<f32>,
+    pub normal: Vec<[f32; 3]>,
+    pub object: Vec<u32>,
+    pub primitive: Vec<u32>,
+}
+
+impl FilmTile {
+    fn new(x: usize, y: usize, width: usize, height: usize, planes: Planes) -> Self {
+        let pixels = width * height;
+        let kept = |keep: bool| if keep { pixels } else { 0 };
+        Self {
+            x,
+            y,
+            width,
+            height,
+            color: vec![[0.0; 3]; pixels],
+            rgba: vec![[0, 0, 0, 255]; pixels],
+            depth: vec![f32::INFINITY; kept(planes.depth)],
+            normal: vec![[0.0; 3]; kept(planes.normal)],
+            object: vec![u32::MAX; kept(planes.object)],
+            primitive: vec![u32::MAX; kept(planes.primitive)],
+        }
+    }
+
+    /// Encodes the linear colours.
+    pub fn encode(&mut self, encoder: &Encoder) {
+        for (out, color) in self.rgba.iter_mut().zip(&self.color) {
+            let [r, g, b] = encoder.encode(*color);
+            *out = [r, g, b, 255];
+        }
+    }
+}
+
 /// A picture of `width` x `height` pixels. Reused from frame to frame without allocating.
 #[derive(Debug)]
 pub struct Film {
     width: u32,
     height: u32,
     planes: Planes,
-    pub(super) rgba: Vec<u8>,
+    pub(super) tiles: Vec<FilmTile>,
+    rgba: Vec<u8>,
 }
 
 impl Film {
     /// A black picture. `width` and `height` must be at least 1.
     pub fn new(width: u32, height: u32, planes: Planes) -> Self {
         assert!(width > 0 && height > 0, "a film has at least one pixel");
-        Self { width, height, planes, rgba: vec![0; width as usize * height as usize * 4] }
+        let (w, h) = (width as usize, height as usize);
+        let starts = (0..h).step_by(TILE).flat_map(|y| (0..w).step_by(TILE).map(move |x| (x, y)));
+        let tiles = starts.map(|(x, y)| FilmTile::new(x, y, TILE.min(w - x), TILE.min(h - y), planes)).collect();
+        Self { width, height, planes, tiles, rgba: vec![0; w * h * 4] }
     }
 
     /// Width in pixels.
@@ -53,27 +110,50 @@ impl Film {
     }
 
     /// Linear, unclamped colour of a pixel, before exposure and tone map.
-    pub fn color(&self, _x: u32, _y: u32) -> [f32; 3] {
-        [0.0; 3]
+    pub fn color(&self, x: u32, y: u32) -> [f32; 3] {
+        let (tile, pixel) = self.find(x, y);
+        tile.color[pixel]
     }
 
     /// Distance from the eye to what a pixel sees, +inf on a miss; `None` when the film keeps no such plane.
-    pub fn depth(&self, _x: u32, _y: u32) -> Option<f32> {
-        None
+    pub fn depth(&self, x: u32, y: u32) -> Option<f32> {
+        let (tile, pixel) = self.find(x, y);
+        tile.depth.get(pixel).copied()
     }
 
-    /// Shading normal faced to the viewer, 0 on a miss.
-    pub fn normal(&self, _x: u32, _y: u32) -> Option<[f32; 3]> {
-        None
+    /// Shading normal faced to the viewer, 0 on a miss; `None` when the film keeps no such plane.
+    pub fn normal(&self, x: u32, y: u32) -> Option<[f32; 3]> {
+        let (tile, pixel) = self.find(x, y);
+        tile.normal.get(pixel).copied()
     }
 
-    /// Object index, `u32::MAX` on a miss.
-    pub fn object(&self, _x: u32, _y: u32) -> Option<u32> {
-        None
+    /// Object index, `u32::MAX` on a miss; `None` when the film keeps no such plane.
+    pub fn object(&self, x: u32, y: u32) -> Option<u32> {
+        let (tile, pixel) = self.find(x, y);
+        tile.object.get(pixel).copied()
     }
 
-    /// Primitive index within the object, `u32::MAX` on a miss.
-    pub fn primitive(&self, _x: u32, _y: u32) -> Option<u32> {
-        None
+    /// Primitive index within the object, `u32::MAX` on a miss; `None` when the film keeps no such plane.
+    pub fn primitive(&self, x: u32, y: u32) -> Option<u32> {
+        let (tile, pixel) = self.find(x, y);
+        tile.primitive.get(pixel).copied()
+    }
+
+    fn find(&self, x: u32, y: u32) -> (&FilmTile, usize) {
+        assert!(x < self.width && y < self.height, "pixel ({x}, {y}) lies outside of the film");
+        let (x, y) = (x as usize, y as usize);
+        let tile = &self.tiles[y / TILE * (self.width as usize).div_ceil(TILE) + x / TILE];
+        (tile, y % TILE * tile.width + x % TILE)
+    }
+
+    /// Copies the tiles' encoded pixels into the row-by-row picture.
+    pub(super) fn assemble(&mut self) {
+        let row_bytes = self.width as usize * 4;
+        for tile in &self.tiles {
+            for (row, pixels) in tile.rgba.chunks_exact(tile.width).enumerate() {
+                let start = (tile.y + row) * row_bytes + tile.x * 4;
+                self.rgba[start..start + tile.width * 4].copy_from_slice(pixels.as_flattened());
+            }
+        }
     }
 }

@@ -1,10 +1,22 @@
 //! The waist of the program: one frame from scene, camera and settings.
 
+use super::film::FilmTile;
+use super::plan::Plan;
+use super::resolve::Encoder;
+use super::tables::Tables;
+use super::tile::{self, Worker};
 use super::{Film, FrameStats};
-use crate::scene::{Camera, Scene};
-use crate::settings::Settings;
-use std::sync::Arc;
+use crate::geometry::{Block, SphereTerms};
+use crate::math::{SimdToken, dispatch};
+use crate::scene::camera::CameraFrame;
+use crate::scene::light::{Falloff, LightKind};
+use crate::scene::{Camera, Light, Scene};
+use crate::settings::{Settings, SphereCache};
+use glam::Vec3;
+use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 /// Asks a frame to stop between tiles.
 #[derive(Clone, Debug, Default)]
@@ -32,6 +44,43 @@ impl CancelToken {
 pub struct Scratch {
     /// Stops a frame early.
     pub cancel: CancelToken,
+    pool: Option<Pool>,
+    tables: Tables,
+    sphere_terms: Vec<Block<4>>,
+    lights: Vec<Light>,
+    around_eye: Vec<u32>,
+}
+
+/// Worker threads and what each of them keeps from tile to tile.
+#[derive(Debug)]
+struct Pool {
+    asked: i32,
+    threads: rayon::ThreadPool,
+    workers: Vec<Mutex<Worker>>,
+}
+
+impl Pool {
+    fn new(asked: i32) -> Self {
+        let threads = thread_count(asked);
+        let built = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .thread_name(|i| format!("tracer {i}"))
+            .build()
+            .or_else(|_| rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build());
+        let threads = built.expect("a pool of the current thread needs no new thread");
+        let workers = (0..threads.current_num_threads()).map(|_| Mutex::default()).collect();
+        Self { asked, threads, workers }
+    }
+}
+
+/// How many threads a setting means on this machine: 0 all cores, n that many, -n all but n; at least 1.
+pub fn thread_count(asked: i32) -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    match asked {
+        0 => cores,
+        1.. => asked as usize,
+        _ => cores.saturating_sub(asked.unsigned_abs() as usize).max(1),
+    }
 }
 
 impl Scratch {
@@ -41,13 +90,95 @@ impl Scratch {
     }
 }
 
+/// All that the tiles of one frame share.
+pub(super) struct Frame<'a> {
+    pub scene: &'a Scene,
+    pub settings: &'a Settings,
+    pub plan: Plan,
+    pub tables: &'a Tables,
+    pub camera: CameraFrame,
+    pub lights: &'a [Light],
+    /// Ambient light of the scene.
+    pub ambient: Vec3,
+    pub sphere_terms: SphereTerms<'a>,
+    /// Transparent bodies around the eye, outermost first.
+    pub around_eye: &'a [u32],
+    /// Whether the film keeps the normals of what it sees.
+    pub keeps_normals: bool,
+    pub encoder: Encoder,
+}
+
 /// Renders one frame into `film`.
+///
+/// The picture depends on scene, camera, settings and the film's size alone: not on what was rendered before, nor on
+/// the number of threads. A SIMD level that the machine lacks falls back to the best it has.
 pub fn render_frame(
-    _scene: &Scene,
-    _camera: &Camera,
-    _settings: &Settings,
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
     scratch: &mut Scratch,
-    _film: &mut Film,
+    film: &mut Film,
 ) -> FrameStats {
-    FrameStats { completed: !scratch.cancel.is_cancelled(), ..FrameStats::default() }
+    let start = Instant::now();
+    let token = SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best);
+    let Scratch { cancel, pool, tables, sphere_terms, lights, around_eye } = scratch;
+    if tables.generation != Some(scene.generation) {
+        *tables = Tables::new(scene);
+    }
+    if pool.as_ref().is_none_or(|p| p.asked != settings.threads) {
+        *pool = Some(Pool::new(settings.threads));
+    }
+    let Some(Pool { threads, workers, .. }) = pool else { unreachable!("the pool was just made") };
+
+    let plan = Plan::with_tables(scene, settings, tables);
+    lights.clone_from(&scene.lights);
+    if scene.headlight {
+        let kind = LightKind::Point { position: camera.eye };
+        lights.push(Light { name: None, kind, color: Vec3::ONE, falloff: Falloff::None });
+    }
+    around_eye.clear();
+    if plan.media {
+        super::inside::bodies_around(scene, tables, camera.eye, around_eye);
+    }
+    if plan.sphere_cache != SphereCache::Off {
+        let thesis = plan.sphere_cache == SphereCache::Thesis;
+        dispatch!(token, simd => scene.geometry.fill_sphere_terms(simd, camera.eye, thesis, sphere_terms));
+    }
+    let frame = Frame {
+        scene,
+        settings,
+        plan,
+        tables,
+        camera: camera.frame(film.width(), film.height()),
+        lights,
+        ambient: scene.render.ambient,
+        sphere_terms: match plan.sphere_cache {
+            SphereCache::Off => SphereTerms::None,
+            SphereCache::On => SphereTerms::Exact(sphere_terms),
+            SphereCache::Thesis => SphereTerms::Thesis(sphere_terms),
+        },
+        around_eye,
+        keeps_normals: film.planes().normal,
+        encoder: Encoder::new(settings),
+    };
+
+    let work = |film_tile: &mut FilmTile| {
+        if cancel.is_cancelled() {
+            return;
+        }
+        let index = rayon::current_thread_index().unwrap_or(0) % workers.len();
+        // A worker whose thread panicked left nothing behind that the next tile would read.
+        let mut worker = workers[index].lock().unwrap_or_else(PoisonError::into_inner);
+        dispatch!(token, simd => tile::render(simd, &frame, film_tile, &mut worker));
+    };
+    threads.install(|| film.tiles.par_iter_mut().with_max_len(1).for_each(work));
+    film.assemble();
+
+    let mut stats = FrameStats { completed: !cancel.is_cancelled(), ..FrameStats::default() };
+    for worker in workers.iter_mut() {
+        let worker = worker.get_mut().unwrap_or_else(PoisonError::into_inner);
+        stats.add(&std::mem::take(&mut worker.stats));
+    }
+    stats.frame_ms = start.elapsed().as_secs_f64() * 1e3;
+    stats
 }

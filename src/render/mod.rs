@@ -1,9 +1,27 @@
 //! One frame from scene, camera and settings. No window, no file.
+//!
+//! `frame` makes the plan and hands tiles to workers; `tile` runs one tile: `visibility` finds what each sample sees,
+//! then level by level `shade` adds local light and queues rays, `shadow` and `trace` trace them, `secondary` follows
+//! mirrors and glass; `resolve` encodes the result.
 
 pub mod film;
-pub mod frame;
+mod frame;
+mod gather;
+mod inside;
+mod media;
+pub mod plan;
+mod queue;
+mod resolve;
+mod secondary;
+mod shade;
+mod shadow;
 pub mod stats;
+mod tables;
+mod tile;
+mod trace;
+mod visibility;
 
 pub use film::{Film, Planes};
-pub use frame::{CancelToken, Scratch, render_frame};
+pub use frame::{CancelToken, Scratch, render_frame, thread_count};
+pub use plan::Plan;
 pub use stats::FrameStats;

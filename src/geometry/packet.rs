@@ -1,0 +1,107 @@
+//! One ray a lane, with what a box test needs of it.
+
+use super::Geometry;
+use super::bvh::{Node, WIDTH};
+use crate::math::{Lanes, V3};
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8, mask32x8};
+use glam::Vec3;
+
+/// Boxes are widened by this share of the largest coordinate in play. A kernel's hit can lie outside of the true
+/// shape by a few rounding errors of its operands, each at most 2^-24 of that coordinate; boxes must not cull it.
+const BOX_PADDING: f32 = 4e-6;
+
+/// Components of a direction below this are taken for this: its inverse stays finite, so that no box test makes a NaN.
+const LEAST_COMPONENT: f32 = 1e-30;
+
+/// A packet of rays, one a lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Packet<S: Simd> {
+    /// Origins.
+    pub origin: V3<S::f32s>,
+    /// Unit directions.
+    pub direction: V3<S::f32s>,
+    inverse: V3<S::f32s>,
+    padding: f32,
+    reach: Reach,
+}
+
+/// Intervals over all lanes of a packet, axis by axis, for testing a box against all of its rays at once.
+#[derive(Clone, Copy, Debug)]
+struct Reach {
+    origin_min: Vec3,
+    origin_max: Vec3,
+    inverse_min: Vec3,
+    inverse_max: Vec3,
+}
+
+impl<S: Simd> Packet<S> {
+    /// A packet in the space of `geometry`.
+    #[inline(always)]
+    pub fn new(simd: S, geometry: &Geometry, origin: V3<S::f32s>, direction: V3<S::f32s>) -> Self {
+        let least = S::f32s::splat(simd, LEAST_COMPONENT);
+        let one = S::f32s::splat(simd, 1.0);
+        let invert = |d: S::f32s| one / d.abs().simd_lt(least).select(least.copysign(d), d);
+        let inverse = V3::new(invert(direction.x), invert(direction.y), invert(direction.z));
+        let min = |v: V3<S::f32s>| Vec3::new(v.x.reduce_min(), v.y.reduce_min(), v.z.reduce_min());
+        let max = |v: V3<S::f32s>| Vec3::new(v.x.reduce_max(), v.y.reduce_max(), v.z.reduce_max());
+        let reach = Reach {
+            origin_min: min(origin),
+            origin_max: max(origin),
+            inverse_min: min(inverse),
+            inverse_max: max(inverse),
+        };
+        let farthest = reach.origin_min.abs().max(reach.origin_max.abs()).max_element();
+        Self { origin, direction, inverse, padding: (farthest + geometry.reach()) * BOX_PADDING, reach }
+    }
+
+    /// Which of a node's boxes any ray of the packet could enter before `limit`: an overestimate of
+    /// [`enter_box`](Self::enter_box), eight boxes at once.
+    #[inline(always)]
+    pub fn may_enter(&self, simd: S, node: &Node, limit: f32) -> u32 {
+        type Boxes<S> = f32x8<S>;
+        let mut near = Boxes::splat(simd, 0.0);
+        let mut far = Boxes::splat(simd, limit);
+        for axis in 0..3 {
+            let (inverse_min, inverse_max) = (self.reach.inverse_min[axis], self.reach.inverse_max[axis]);
+            if (inverse_min < 0.0) != (inverse_max < 0.0) {
+                continue;
+            }
+            // The same operations as in `enter_box`, at the ends of the intervals: rounding is monotonic,
+            // so that no lane's own result lies outside.
+            let to_min = Boxes::from_slice(simd, &node.min[axis]) - (self.reach.origin_max[axis] + self.padding);
+            let to_max = Boxes::from_slice(simd, &node.max[axis]) - (self.reach.origin_min[axis] - self.padding);
+            let (entry, exit) = if inverse_max < 0.0 { (to_max, to_min) } else { (to_min, to_max) };
+            near = near.max((entry * inverse_min).min(entry * inverse_max));
+            far = far.min((exit * inverse_min).max(exit * inverse_max));
+        }
+        let mask: mask32x8<S> = near.simd_le(far);
+        mask.to_bitmask() as u32
+    }
+
+    /// Which rays enter a padded box before their `limit`, and how far away.
+    #[inline(always)]
+    pub fn enter_box(&self, node: &Node, child: usize, limit: S::f32s) -> (<S::f32s as SimdBase<S>>::Mask, S::f32s) {
+        let slab = |axis: usize, origin: S::f32s, inverse: S::f32s| {
+            let to_min = (-(origin + self.padding) + node.min[axis][child]) * inverse;
+            let to_max = (-(origin - self.padding) + node.max[axis][child]) * inverse;
+            (to_min.min(to_max), to_min.max(to_max))
+        };
+        let (near_x, far_x) = slab(0, self.origin.x, self.inverse.x);
+        let (near_y, far_y) = slab(1, self.origin.y, self.inverse.y);
+        let (near_z, far_z) = slab(2, self.origin.z, self.inverse.z);
+        let zero = S::f32s::splat(limit.token(), 0.0);
+        let near = near_x.max(near_y).max(near_z.max(zero));
+        let far = far_x.min(far_y).min(far_z.min(limit));
+        // At equal distance a box is not skipped: what is in it may win the tie.
+        (near.simd_le(far), near)
+    }
+}
+
+const _: () = assert!(WIDTH == 8, "a node's boxes fill eight lanes");
+
+/// The largest of all lanes.
+#[inline(always)]
+pub fn largest_lane<S: Simd, F: Lanes<S>>(v: F) -> f32 {
+    v.reduce_max()
+}

@@ -1,0 +1,94 @@
+//! Open sides of cylinders and truncated cones:
+//! `{ "type": "cone", "base": [0,0,0], "top": [0,1,0], "radius": 0.3, "radius_top": 0.1 }`.
+//!
+//! The quadratic is solved from the ray's point nearest to the cone's middle, so that its terms are no larger than
+//! the cone itself, and by the form of the roots that never subtracts nearly equal numbers.
+
+use super::{Kernel, SurfacePoint, largest};
+use crate::geometry::Aabb;
+use crate::math::{Lanes, V3};
+use fearless_simd::prelude::*;
+use fearless_simd::Simd;
+use glam::Vec3;
+
+/// The cone kernel. Fields: middle of the axis x y z, unit axis x y z, half of the height, radius at the middle,
+/// growth of the radius per unit of height.
+#[derive(Debug)]
+pub struct Cone;
+
+impl Cone {
+    /// Packs a cone or cylinder into fields. Computed in f64, rounded once.
+    pub fn fields(base: Vec3, top: Vec3, radius_base: f32, radius_top: f32) -> [f32; 9] {
+        let (base, top) = (base.as_dvec3(), top.as_dvec3());
+        let height = (top - base).length();
+        let axis = ((top - base) / height).as_vec3();
+        let middle = ((base + top) * 0.5).as_vec3();
+        let (r0, r1) = (f64::from(radius_base), f64::from(radius_top));
+        let radius = ((r0 + r1) * 0.5) as f32;
+        let slope = ((r1 - r0) / height) as f32;
+        [middle.x, middle.y, middle.z, axis.x, axis.y, axis.z, (height * 0.5) as f32, radius, slope]
+    }
+}
+
+impl Kernel<9> for Cone {
+    fn bounds(fields: &[f32; 9]) -> Aabb {
+        let (middle, axis) = (Vec3::from_slice(&fields[0..3]), Vec3::from_slice(&fields[3..6]));
+        let [half_height, radius, slope] = [fields[6], fields[7], fields[8]];
+        let across = (Vec3::ONE - axis * axis).max(Vec3::ZERO).map(f32::sqrt);
+        let end = |height: f32| {
+            let (center, half) = (middle + axis * height, across * (radius + slope * height));
+            Aabb { min: center - half, max: center + half }
+        };
+        end(-half_height).union(end(half_height))
+    }
+
+    #[inline(always)]
+    fn intersect<S: Simd, F: Lanes<S>>(
+        fields: &[F; 9],
+        origin: V3<F>,
+        direction: V3<F>,
+        t_min: F,
+    ) -> (F::Mask, F) {
+        let middle = V3::new(fields[0], fields[1], fields[2]);
+        let axis = V3::new(fields[3], fields[4], fields[5]);
+        let [half_height, radius, slope] = [fields[6], fields[7], fields[8]];
+        let zero = F::splat(t_min.token(), 0.0);
+
+        let nearest_t = (middle - origin).dot(direction);
+        let nearest = direction.scale(nearest_t) - (middle - origin);
+        let (height, climb) = (nearest.dot(axis), direction.dot(axis));
+        let across = nearest - axis.scale(height);
+        let across_step = direction - axis.scale(climb);
+        let (wall, wall_step) = (radius + slope * height, slope * climb);
+
+        let a = across_step.dot(across_step) - wall_step * wall_step;
+        let b = across.dot(across_step) - wall * wall_step;
+        let c = across.dot(across) - wall * wall;
+        let discriminant = b * b - a * c;
+        let meets = discriminant.simd_ge(zero);
+        let root = meets.select(discriminant, zero).sqrt();
+        let q = -(b + b.simd_lt(zero).select(-root, root));
+        let (s0, s1) = (q / a, c / q);
+        // A root that is not a number (no quadratic, or a ray along the wall) fails every comparison below.
+        let valid = |s: F| {
+            let on_side = (height + climb * s).abs().simd_le(half_height);
+            on_side & (nearest_t + s).simd_gt(t_min)
+        };
+        let (valid0, valid1) = (valid(s0), valid(s1));
+        let first = valid0 & (!valid1 | s0.simd_le(s1));
+        (meets & (valid0 | valid1), nearest_t + first.select(s0, s1))
+    }
+
+    #[inline(always)]
+    fn surface<S: Simd, F: Lanes<S>>(fields: &[F; 9], origin: V3<F>, direction: V3<F>, t: F) -> SurfacePoint<F> {
+        let middle = V3::new(fields[0], fields[1], fields[2]);
+        let axis = V3::new(fields[3], fields[4], fields[5]);
+        let [half_height, radius, slope] = [fields[6], fields[7], fields[8]];
+        let from_middle = direction.scale(t) - (middle - origin);
+        let height = from_middle.dot(axis);
+        let outward = (from_middle - axis.scale(height)).normalize();
+        let position = middle + axis.scale(height) + outward.scale(radius + slope * height);
+        let normal = (outward - axis.scale(slope)).normalize();
+        SurfacePoint { position, normal, scale: largest(middle) + half_height + radius }
+    }
+}

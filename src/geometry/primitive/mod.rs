@@ -1,0 +1,71 @@
+//! Primitive types: one file each, one line each in [`for_each_primitive!`].
+//!
+//! A primitive is a fixed number of f32 fields and a [`Kernel`] over them. Kernels are generic over lanes:
+//! the same text tests many rays against one primitive (fields splat) or one ray against eight (fields loaded),
+//! and gives the same bits either way.
+
+pub mod cone;
+pub mod disk;
+pub mod plane;
+pub mod sphere;
+pub mod triangle;
+
+pub use cone::Cone;
+pub use disk::Disk;
+pub use plane::Plane;
+pub use sphere::Sphere;
+pub use triangle::Triangle;
+
+use super::Aabb;
+use crate::math::{Lanes, V3};
+use fearless_simd::Simd;
+
+/// Calls `$callback!` with every primitive type: its kernel, its field count and the name of its blocks in
+/// [`Geometry`](super::Geometry). To add a primitive, add its file above and its line here.
+macro_rules! for_each_primitive {
+    ($callback:ident) => {
+        $callback! {
+            Sphere 4 spheres,
+            Triangle 10 triangles,
+            Disk 7 disks,
+            Cone 9 cones,
+            Plane 4 planes,
+        }
+    };
+}
+pub(crate) use for_each_primitive;
+
+/// A point of a surface, in lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint<F> {
+    /// The hit point, moved onto the surface.
+    pub position: V3<F>,
+    /// Unit geometric normal: outward for closed shapes, as defined for flat ones.
+    pub normal: V3<F>,
+    /// Largest coordinate magnitude that went into `position`: its rounding error is a few ulps of this.
+    pub scale: F,
+}
+
+/// What the tracer needs of a primitive type with `N` fields.
+pub trait Kernel<const N: usize> {
+    /// The least box around the primitive; infinite for planes.
+    fn bounds(fields: &[f32; N]) -> Aabb;
+
+    /// Distance to the first hit beyond `t_min` (exclusive) along the unit `direction`, where the mask is set.
+    /// Elsewhere the distance is meaningless. Distances may come out infinite: callers compare with a finite limit.
+    fn intersect<S: Simd, F: Lanes<S>>(
+        fields: &[F; N],
+        origin: V3<F>,
+        direction: V3<F>,
+        t_min: F,
+    ) -> (F::Mask, F);
+
+    /// The surface at distance `t`, for a ray that [`intersect`](Self::intersect) found to hit there.
+    fn surface<S: Simd, F: Lanes<S>>(fields: &[F; N], origin: V3<F>, direction: V3<F>, t: F) -> SurfacePoint<F>;
+}
+
+/// The larger magnitude of each pair of components, folded to one number.
+#[inline(always)]
+pub(super) fn largest<S: Simd, F: Lanes<S>>(v: V3<F>) -> F {
+    v.x.abs().max(v.y.abs()).max(v.z.abs())
+}

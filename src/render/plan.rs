@@ -1,0 +1,123 @@
+//! The cheapest pipeline that draws a scene: what of the tracer a frame runs, and why.
+
+use super::tables::Tables;
+use crate::geometry::PrimitiveKind;
+use crate::scene::Scene;
+use crate::scene::material::ColorSource;
+use crate::settings::{Settings, SphereCache};
+
+/// What a frame runs. Made once a frame; nothing below asks settings or scene again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// Go through the tree rather than test every primitive.
+    pub tree: bool,
+    /// Compute sphere terms once for all primary rays.
+    pub sphere_cache: SphereCache,
+    /// Trace shadow rays.
+    pub shadows: bool,
+    /// Shadow rays may pass through something.
+    pub coloured_shadows: bool,
+    /// Trace mirror rays.
+    pub reflections: bool,
+    /// Trace refracted rays.
+    pub refractions: bool,
+    /// Keep track of the bodies that rays are inside of.
+    pub media: bool,
+    /// Look up textures.
+    pub textures: bool,
+    /// Interpolate normals or texture coordinates of triangles.
+    pub vertex_attributes: bool,
+    /// Some surface is metallic-roughness.
+    pub metallic_roughness: bool,
+    /// Most rays on a path.
+    pub depth: u32,
+}
+
+impl Plan {
+    /// The plan for a scene under given settings.
+    pub fn new(scene: &Scene, settings: &Settings) -> Self {
+        Self::with_tables(scene, settings, &Tables::new(scene))
+    }
+
+    pub(super) fn with_tables(scene: &Scene, settings: &Settings, tables: &Tables) -> Self {
+        let has = |kind| scene.geometry.count(kind) > 0;
+        let textured = |source: &ColorSource| matches!(source, ColorSource::Texture(_));
+        let depth = settings.depth.unwrap_or(scene.render.max_depth);
+        let refractions = settings.refractions && depth > 1 && !tables.opaque.is_empty();
+        Self {
+            tree: settings.bvh && scene.geometry.bvh.is_some(),
+            sphere_cache: if has(PrimitiveKind::Sphere) { settings.sphere_cache } else { SphereCache::Off },
+            shadows: settings.shadows && !scene.lights.is_empty(),
+            coloured_shadows: !tables.opaque.is_empty(),
+            reflections: settings.reflections && depth > 1 && tables.materials.iter().any(|m| m.secondary),
+            refractions,
+            media: refractions && !tables.transparent_bodies.is_empty(),
+            textures: scene.materials.iter().any(|m| textured(&m.color) || textured(&m.emission)),
+            vertex_attributes: !scene.geometry.attributes.is_empty(),
+            metallic_roughness: tables.materials.iter().any(|m| m.metallic_roughness),
+            depth,
+        }
+    }
+
+    /// The plan in words: what runs or does not, and why; one line each.
+    pub fn reasons(&self, scene: &Scene) -> Vec<String> {
+        let primitives = scene.geometry.len();
+        let say = |on: bool, yes: String, no: &str| if on { yes } else { no.to_owned() };
+        vec![
+            say(
+                self.tree,
+                format!("tree: on, {primitives} primitives are worth one"),
+                "tree: off, there are too few primitives for one (or it was switched off)",
+            ),
+            say(
+                self.sphere_cache != SphereCache::Off,
+                "sphere terms: computed once for all primary rays, they share the eye".to_owned(),
+                "sphere terms: off, there are no spheres (or they were switched off)",
+            ),
+            say(
+                self.shadows,
+                format!("shadows: on, {} light(s) cast them", scene.lights.len()),
+                if scene.headlight {
+                    "shadows: off, the only light is at the eye"
+                } else {
+                    "shadows: off, they were switched off"
+                },
+            ),
+            say(
+                self.coloured_shadows,
+                "coloured shadows: on, some material lets light through".to_owned(),
+                "coloured shadows: off, everything is opaque: any hit ends a shadow ray",
+            ),
+            say(
+                self.reflections,
+                format!("reflections: on, some material mirrors; paths of up to {} rays", self.depth),
+                "reflections: off, nothing mirrors (or they were switched off)",
+            ),
+            say(
+                self.refractions,
+                "refractions: on, some material is transparent".to_owned(),
+                "refractions: off, nothing is transparent (or they were switched off)",
+            ),
+            say(
+                self.media,
+                "media: on, rays keep track of the bodies they are inside of".to_owned(),
+                "media: off, no transparent body bends light",
+            ),
+            say(
+                self.textures,
+                format!("textures: on, {} in the scene", scene.textures.len()),
+                "textures: off, every colour is constant: no texture coordinates",
+            ),
+            say(
+                self.vertex_attributes,
+                "vertex data: on, some triangles carry normals or texture coordinates".to_owned(),
+                "vertex data: off, every normal follows from the shape",
+            ),
+            say(
+                self.metallic_roughness,
+                "shading: Lambert, Blinn-Phong and metallic-roughness".to_owned(),
+                "shading: Lambert and Blinn-Phong only",
+            ),
+        ]
+    }
+}

@@ -1,0 +1,265 @@
+//! Rays waiting to be traced, column by column, so that packets load and kernels write whole lanes.
+
+use crate::geometry::NO_PRIMITIVE;
+use crate::math::V3;
+use fearless_simd::prelude::*;
+use fearless_simd::Simd;
+use glam::Vec3;
+
+/// The widest packet: queues keep this much room beyond their length, so that every packet is a full load.
+pub const MOST_LANES: usize = 16;
+
+/// Three columns of a vector.
+#[derive(Clone, Debug, Default)]
+pub struct Columns {
+    pub x: Vec<f32>,
+    pub y: Vec<f32>,
+    pub z: Vec<f32>,
+}
+
+impl Columns {
+    fn resize(&mut self, len: usize) {
+        for column in [&mut self.x, &mut self.y, &mut self.z] {
+            column.resize(len, 0.0);
+        }
+    }
+
+    pub fn set(&mut self, at: usize, v: Vec3) {
+        (self.x[at], self.y[at], self.z[at]) = (v.x, v.y, v.z);
+    }
+
+    pub fn get(&self, at: usize) -> Vec3 {
+        Vec3::new(self.x[at], self.y[at], self.z[at])
+    }
+
+    /// Stores lanes starting at `at`.
+    #[inline(always)]
+    pub fn store<S: Simd>(&mut self, at: usize, v: V3<S::f32s>) {
+        let range = at..at + S::f32s::LEN;
+        v.x.store_slice(&mut self.x[range.clone()]);
+        v.y.store_slice(&mut self.y[range.clone()]);
+        v.z.store_slice(&mut self.z[range]);
+    }
+
+    /// The lanes starting at `at`.
+    #[inline(always)]
+    pub fn load<S: Simd>(&self, simd: S, at: usize) -> V3<S::f32s> {
+        let range = at..at + S::f32s::LEN;
+        V3::load(simd, &self.x[range.clone()], &self.y[range.clone()], &self.z[range])
+    }
+}
+
+/// Rays of one level of the paths of a tile, and what they hit.
+#[derive(Clone, Debug, Default)]
+pub struct RayQueue {
+    pub origin: Columns,
+    pub direction: Columns,
+    /// What the ray's light is multiplied by on its way to the pixel.
+    pub weight: Columns,
+    /// Which sample of the tile it belongs to.
+    pub sample: Vec<u32>,
+    /// The bodies it starts in.
+    pub media: Vec<u32>,
+    /// Distance of the hit; its limit on a miss.
+    pub t: Vec<f32>,
+    /// The primitive hit, or [`NO_PRIMITIVE`].
+    pub primitive: Vec<u32>,
+    len: usize,
+}
+
+impl RayQueue {
+    /// How many rays there are.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Empties the queue; its memory stays.
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Makes room for `rays` in all.
+    pub fn reserve(&mut self, rays: usize) {
+        let room = rays + MOST_LANES;
+        if self.t.len() < room {
+            let room = room.next_power_of_two();
+            for columns in [&mut self.origin, &mut self.direction, &mut self.weight] {
+                columns.resize(room);
+            }
+            self.sample.resize(room, 0);
+            self.media.resize(room, 0);
+            self.t.resize(room, 0.0);
+            self.primitive.resize(room, NO_PRIMITIVE);
+        }
+    }
+
+    /// Appends a ray.
+    #[inline]
+    pub fn push(&mut self, origin: Vec3, direction: Vec3, weight: Vec3, sample: u32, media: u32) {
+        let at = self.len;
+        self.reserve(at + 1);
+        self.origin.set(at, origin);
+        self.direction.set(at, direction);
+        self.weight.set(at, weight);
+        self.sample[at] = sample;
+        self.media[at] = media;
+        self.len += 1;
+    }
+
+    /// Repeats the last ray beyond the end, so that a packet that is not full stays as coherent as its rays.
+    pub fn pad(&mut self) {
+        if self.len == 0 {
+            return;
+        }
+        let last = self.len - 1;
+        let (origin, direction) = (self.origin.get(last), self.direction.get(last));
+        for at in self.len..self.len + MOST_LANES {
+            self.origin.set(at, origin);
+            self.direction.set(at, direction);
+        }
+        self.clear_padding();
+    }
+
+    /// Marks the rays beyond the end as hitting nothing: they are nobody's.
+    pub fn clear_padding(&mut self) {
+        let beyond = self.len..self.len + MOST_LANES;
+        self.primitive[beyond.clone()].fill(NO_PRIMITIVE);
+        self.t[beyond].fill(0.0);
+    }
+}
+
+impl RayQueue {
+    /// Appends all rays of another queue, with their hits.
+    pub fn append(&mut self, other: &Self) {
+        for at in 0..other.len {
+            self.copy_in(other, at);
+        }
+    }
+
+    fn copy_in(&mut self, other: &Self, at: usize) {
+        let to = self.len;
+        self.push(
+            other.origin.get(at),
+            other.direction.get(at),
+            other.weight.get(at),
+            other.sample[at],
+            other.media[at],
+        );
+        (self.t[to], self.primitive[to]) = (other.t[at], other.primitive[at]);
+    }
+
+    /// Marks the rays from `first` on as hitting nothing.
+    pub fn miss_from(&mut self, first: usize) {
+        let missed = first..self.len;
+        self.primitive[missed.clone()].fill(NO_PRIMITIVE);
+        self.t[missed].fill(f32::INFINITY);
+    }
+
+    /// Keeps the rays that `keep(sample, primitive)` wants, in order, looking only at those from `first` on.
+    pub fn retain_from(&mut self, first: usize, mut keep: impl FnMut(u32, u32) -> bool) {
+        let mut to = first;
+        for at in first..self.len {
+            if keep(self.sample[at], self.primitive[at]) {
+                for columns in [&mut self.origin, &mut self.direction, &mut self.weight] {
+                    let ray = columns.get(at);
+                    columns.set(to, ray);
+                }
+                self.sample[to] = self.sample[at];
+                self.media[to] = self.media[at];
+                self.t[to] = self.t[at];
+                self.primitive[to] = self.primitive[at];
+                to += 1;
+            }
+        }
+        self.len = to;
+    }
+}
+
+/// Shadow rays towards one light.
+#[derive(Clone, Debug, Default)]
+pub struct ShadowQueue {
+    pub origin: Columns,
+    /// Unit direction to the light.
+    pub direction: Columns,
+    /// What the pixel gains if nothing is in the way.
+    pub gain: Columns,
+    /// Distance of the light.
+    pub distance: Vec<f32>,
+    pub sample: Vec<u32>,
+    len: usize,
+}
+
+impl ShadowQueue {
+    /// How many rays there are.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Empties the queue; its memory stays.
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Makes room for `rays` more, and lanes beyond.
+    pub fn reserve(&mut self, rays: usize) {
+        let room = self.len + rays + MOST_LANES;
+        if self.distance.len() < room {
+            let room = room.next_power_of_two();
+            for columns in [&mut self.origin, &mut self.direction, &mut self.gain] {
+                columns.resize(room);
+            }
+            self.distance.resize(room, 0.0);
+            self.sample.resize(room, 0);
+        }
+    }
+
+    /// Appends the masked lanes, in order.
+    #[inline(always)]
+    pub fn push_lanes<S: Simd>(
+        &mut self,
+        mask: <S::f32s as SimdBase<S>>::Mask,
+        origin: V3<S::f32s>,
+        direction: V3<S::f32s>,
+        distance: S::f32s,
+        gain: V3<S::f32s>,
+        samples: &[u32],
+    ) {
+        let lanes = S::f32s::LEN;
+        self.reserve(lanes);
+        let at = self.len..self.len + lanes;
+        for (column, values) in [
+            (&mut self.origin.x, origin.x),
+            (&mut self.origin.y, origin.y),
+            (&mut self.origin.z, origin.z),
+            (&mut self.direction.x, direction.x),
+            (&mut self.direction.y, direction.y),
+            (&mut self.direction.z, direction.z),
+            (&mut self.gain.x, gain.x),
+            (&mut self.gain.y, gain.y),
+            (&mut self.gain.z, gain.z),
+            (&mut self.distance, distance),
+        ] {
+            values.compress(mask).store_slice(&mut column[at.clone()]);
+        }
+        let mut bits = mask.to_bitmask();
+        while bits != 0 {
+            self.sample[self.len] = samples[bits.trailing_zeros() as usize];
+            self.len += 1;
+            bits &= bits - 1;
+        }
+    }
+
+    /// Repeats the last ray beyond the end, with no distance to go.
+    pub fn pad(&mut self) {
+        if self.len == 0 {
+            return;
+        }
+        let last = self.len - 1;
+        let (origin, direction) = (self.origin.get(last), self.direction.get(last));
+        for at in self.len..self.len + MOST_LANES {
+            self.origin.set(at, origin);
+            self.direction.set(at, direction);
+            self.distance[at] = 0.0;
+        }
+    }
+}

@@ -1,0 +1,345 @@
+//! Shading one level of a tile's paths: local light at each hit, shadow rays for it, and the rays that follow.
+//!
+//! Lambert (1760), Blinn-Phong (Blinn, SIGGRAPH 1977) and glTF's metallic-roughness (Khronos, glTF 2.0 appendix B).
+
+use super::frame::Frame;
+use super::gather::{Hits, Materials, Surfaces, bits, surfaces};
+use super::queue::RayQueue;
+use super::secondary::{self, Incident};
+use super::tables::Row;
+use super::tile::{Seen, Worker};
+use crate::geometry::NO_PRIMITIVE;
+use crate::math::V3;
+use crate::math::power::pow;
+use crate::scene::light::{Falloff, LightKind};
+use crate::scene::{Light, Scene};
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+use glam::Vec3;
+
+/// Lane mask of native width.
+type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
+
+/// Rays leave a surface this far along its normal, as a share of the largest coordinate that made the hit point:
+/// sixteen units in the last place. The one such margin: every path takes it from here.
+const OFFSET: f32 = 1.0 / (1 << 19) as f32;
+
+/// A packet's surfaces seen from where its rays came.
+struct Lit<S: Simd> {
+    active: Mask<S>,
+    /// Where shadow and mirror rays start: off the surface, on the viewer's side.
+    outside: V3<S::f32s>,
+    /// Shading normal on the viewer's side.
+    normal: V3<S::f32s>,
+    to_viewer: V3<S::f32s>,
+    weight: V3<S::f32s>,
+    color: V3<S::f32s>,
+    opacity: V3<S::f32s>,
+}
+
+/// Shades the hits in `worker.rays`; leaves shadow rays in `worker.shadows` and rays of the next level in
+/// `worker.next_rays`.
+pub(super) fn shade<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &mut Worker) {
+    worker.next_rays.clear();
+    if frame.plan.media {
+        absorb(frame, worker);
+    }
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for at in (0..worker.rays.len()).step_by(S::f32s::LEN) {
+                shade_packet(simd, frame, level, at, worker);
+            }
+        },
+    );
+}
+
+/// Weakens rays by what they crossed inside of bodies.
+fn absorb(frame: &Frame<'_>, worker: &mut Worker) {
+    let Worker { rays, media, .. } = worker;
+    for at in 0..rays.len() {
+        let Some(body) = media.current(rays.media[at]) else { continue };
+        let absorption = absorption_of(frame.scene, body);
+        if absorption != Vec3::ZERO {
+            let length = if rays.primitive[at] == NO_PRIMITIVE { f32::INFINITY } else { rays.t[at] };
+            let left = absorption.to_array().map(|a| if a == 0.0 { 1.0 } else { libm::expf(-a * length) });
+            rays.weight.set(at, rays.weight.get(at) * Vec3::from_array(left));
+        }
+    }
+}
+
+fn absorption_of(scene: &Scene, object: u32) -> Vec3 {
+    scene.materials[scene.objects[object as usize].material as usize].absorption
+}
+
+#[inline(always)]
+fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, worker: &mut Worker) {
+    let lanes = at..at + S::f32s::LEN;
+    let Worker { rays, next_rays, shadows, media, color: pixels, seen, stats, .. } = worker;
+    let hits = Hits::new(&rays.primitive[lanes.clone()]);
+    let count = (rays.len() - at).min(S::f32s::LEN);
+    for lane in (0..count).filter(|lane| hits.active >> lane & 1 == 0) {
+        let light = rays.weight.get(at + lane) * frame.scene.render.background;
+        add(pixels, rays.sample[at + lane], light);
+    }
+    if hits.active == 0 {
+        return;
+    }
+    let (origin, direction) = (rays.origin.load::<S>(simd, at), rays.direction.load::<S>(simd, at));
+    let t = S::f32s::from_slice(simd, &rays.t[lanes.clone()]);
+    let surfaces = surfaces(simd, frame, &hits, origin, direction, t);
+    let view = View::new(simd, &surfaces, direction);
+    if level == 1 && frame.keeps_normals {
+        for lane in hits.lanes() {
+            seen[rays.sample[at + lane] as usize].normal = view.normal.lane(lane).into();
+        }
+    }
+
+    let materials = Materials::new(frame, &hits);
+    let (color, emission) = materials.colors(simd, frame, &hits, &surfaces);
+    let lit = Lit::<S> {
+        active: Mask::<S>::from_bitmask(simd, hits.active),
+        outside: surfaces.point.position + view.offset,
+        normal: view.normal,
+        to_viewer: -direction,
+        weight: rays.weight.load(simd, at),
+        color,
+        opacity: materials.triple(simd, frame, Row::Opacity),
+    };
+    let ambient = V3::splat(simd, frame.ambient) * materials.triple(simd, frame, Row::Ambient);
+    let own = lit.weight * (lit.opacity * ambient * color + emission);
+    for lane in hits.lanes() {
+        add(pixels, rays.sample[at + lane], own.lane(lane));
+    }
+
+    let samples = &rays.sample[lanes];
+    for (light, queue) in frame.lights.iter().zip(shadows) {
+        let Some((reaching, to_light, distance, gain)) = light_gain(simd, frame, light, &lit, &materials, &hits) else {
+            continue;
+        };
+        if frame.plan.shadows {
+            queue.push_lanes::<S>(reaching, lit.outside, to_light, distance, gain, samples);
+        } else {
+            for lane in bits(reaching.to_bitmask()) {
+                add(pixels, samples[lane], gain.lane(lane));
+            }
+        }
+    }
+
+    if level < frame.plan.depth && (frame.plan.reflections || frame.plan.refractions) {
+        let spawns = |material: usize| frame.tables.materials[material].secondary;
+        if materials.any(&hits, spawns) {
+            for lane in hits.lanes().filter(|&lane| spawns(materials.of(lane))) {
+                let incident = Incident {
+                    direction: direction.lane(lane),
+                    position: surfaces.point.position.lane(lane),
+                    offset: view.offset.lane(lane),
+                    normal: view.normal.lane(lane),
+                    entering: !view.from_behind.test(lane),
+                    object: frame.scene.geometry.ids[hits.primitives[lane] as usize].object,
+                    color: color.lane(lane),
+                    weight: rays.weight.get(at + lane),
+                    sample: rays.sample[at + lane],
+                    media: rays.media[at + lane],
+                };
+                secondary::follow(frame, &incident, media, next_rays, &mut stats.rays);
+            }
+        }
+    }
+}
+
+/// How surfaces lie towards the rays that hit them.
+struct View<S: Simd> {
+    /// The geometric normal points away from the viewer.
+    from_behind: Mask<S>,
+    /// Shading normal on the viewer's side.
+    normal: V3<S::f32s>,
+    /// From the hit point off the surface, to the viewer's side.
+    offset: V3<S::f32s>,
+}
+
+impl<S: Simd> View<S> {
+    #[inline(always)]
+    fn new(simd: S, surfaces: &Surfaces<S>, direction: V3<S::f32s>) -> Self {
+        let geometric = surfaces.point.normal;
+        let from_behind = direction.dot(geometric).simd_gt(S::f32s::splat(simd, 0.0));
+        let facing = |n: V3<S::f32s>| V3::select(from_behind, -n, n);
+        Self {
+            from_behind,
+            normal: facing(surfaces.shading_normal),
+            offset: facing(geometric).scale(surfaces.point.scale * OFFSET),
+        }
+    }
+}
+
+/// Adds light to a sample.
+#[inline(always)]
+fn add(pixels: &mut [[f32; 3]], sample: u32, light: Vec3) {
+    let pixel = &mut pixels[sample as usize];
+    *pixel = [pixel[0] + light.x, pixel[1] + light.y, pixel[2] + light.z];
+}
+
+/// What a light adds if nothing is in its way, for the lanes that it can reach at all, with the direction and distance
+/// to it. `None` if it reaches none.
+#[inline(always)]
+#[allow(clippy::type_complexity, reason = "four lane vectors that are taken apart at once")]
+fn light_gain<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    light: &Light,
+    lit: &Lit<S>,
+    materials: &Materials,
+    hits: &Hits<'_>,
+) -> Option<(Mask<S>, V3<S::f32s>, S::f32s, V3<S::f32s>)> {
+    let zero = S::f32s::splat(simd, 0.0);
+    let (to_light, distance) = match light.kind {
+        LightKind::Point { position } | LightKind::Spot { position, .. } => {
+            let to = V3::splat(simd, position) - lit.outside;
+            let distance = to.dot(to).sqrt();
+            (V3::new(to.x / distance, to.y / distance, to.z / distance), distance)
+        }
+        LightKind::Directional { direction } => (V3::splat(simd, -direction), S::f32s::splat(simd, f32::INFINITY)),
+    };
+    let n_dot_l = lit.normal.dot(to_light);
+    let mut reaching = lit.active & n_dot_l.simd_gt(zero);
+    if !reaching.any_true() {
+        return None;
+    }
+    let mut arriving = V3::splat(simd, light.color);
+    if let LightKind::Spot { direction, cos_inner, cos_outer, .. } = light.kind {
+        let share = spot_share(simd, to_light, direction, cos_inner, cos_outer);
+        reaching &= share.simd_gt(zero);
+        if !reaching.any_true() {
+            return None;
+        }
+        arriving = arriving.scale(share);
+    }
+    if light.falloff == Falloff::InverseSquare && !matches!(light.kind, LightKind::Directional { .. }) {
+        arriving = arriving.scale(S::f32s::splat(simd, 1.0) / (distance * distance));
+    }
+
+    let mut reflected = V3::all(zero);
+    let is_metallic = |m: usize| frame.tables.materials[m].metallic_roughness;
+    if materials.any(hits, |m| !is_metallic(m)) {
+        reflected = phong(simd, frame, lit, materials, hits, to_light, n_dot_l);
+    }
+    if frame.plan.metallic_roughness && materials.any(hits, is_metallic) {
+        let roughness = materials.row(simd, frame, Row::Roughness as usize);
+        let metallic = materials.row(simd, frame, Row::Metallic as usize);
+        let other = metallic_roughness(simd, lit, roughness, metallic, to_light, n_dot_l);
+        reflected = V3::select(roughness.simd_ge(zero), other, reflected);
+    }
+    Some((reaching, to_light, distance, lit.weight * arriving * reflected))
+}
+
+/// Lambert and Blinn-Phong: (1-t) diffuse color (n·l) + specular (n·h)^shininess.
+#[inline(always)]
+fn phong<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    lit: &Lit<S>,
+    materials: &Materials,
+    hits: &Hits<'_>,
+    to_light: V3<S::f32s>,
+    n_dot_l: S::f32s,
+) -> V3<S::f32s> {
+    let diffuse = materials.triple(simd, frame, Row::Diffuse);
+    let matte = (lit.opacity * diffuse * lit.color).scale(n_dot_l);
+    if !materials.any(hits, |m| frame.tables.materials[m].shiny) {
+        return matte;
+    }
+    let zero = S::f32s::splat(simd, 0.0);
+    let half = (to_light + lit.to_viewer).normalize();
+    let n_dot_h = lit.normal.dot(half);
+    // A half vector that is not a number (light straight behind) fails the comparison.
+    let n_dot_h = n_dot_h.simd_gt(zero).select(n_dot_h, zero);
+    let highlight = pow::<S, S::f32s>(n_dot_h, materials.row(simd, frame, Row::Shininess as usize));
+    matte + materials.triple(simd, frame, Row::Specular).scale(highlight)
+}
+
+/// The specification's metallic-roughness BRDF times n·l: Lambert under a Trowbridge-Reitz highlight with the
+/// height-correlated Smith term and Schlick's Fresnel.
+#[inline(always)]
+fn metallic_roughness<S: Simd>(
+    simd: S,
+    lit: &Lit<S>,
+    roughness: S::f32s,
+    metallic: S::f32s,
+    to_light: V3<S::f32s>,
+    n_dot_l: S::f32s,
+) -> V3<S::f32s> {
+    let number = |value: f32| S::f32s::splat(simd, value);
+    let (zero, one) = (number(0.0), number(1.0));
+    let half = (to_light + lit.to_viewer).normalize();
+    let at_least_zero = |v: S::f32s| v.simd_gt(zero).select(v, zero);
+    let n_dot_v = at_least_zero(lit.normal.dot(lit.to_viewer));
+    let n_dot_h = at_least_zero(lit.normal.dot(half));
+    let v_dot_h = at_least_zero(lit.to_viewer.dot(half));
+
+    let alpha = roughness * roughness;
+    // A perfect mirror's highlight of a point light has no width: keep it visible and finite.
+    let alpha2 = (alpha * alpha).max(number(1e-6));
+    let d = n_dot_h * n_dot_h * (alpha2 - one) + one;
+    let distribution = alpha2 / (d * d * std::f32::consts::PI);
+    let smith = |a: S::f32s, b: S::f32s| a * (b * b * (one - alpha2) + alpha2).sqrt();
+    let visibility = number(0.5) / (smith(n_dot_l, n_dot_v) + smith(n_dot_v, n_dot_l)).max(number(1e-7));
+
+    let x = one - v_dot_h;
+    let x2 = x * x;
+    let schlick = x2 * x2 * x;
+    let dielectric = number(0.04);
+    let f0 = V3::all(dielectric * (one - metallic)) + lit.color.scale(metallic);
+    let fresnel = f0 + (V3::all(one) - f0).scale(schlick);
+    let diffuse = lit.opacity * lit.color.scale((one - metallic) * std::f32::consts::FRAC_1_PI);
+    ((V3::all(one) - fresnel) * diffuse + fresnel.scale(distribution * visibility)).scale(n_dot_l)
+}
+
+/// glTF's KHR_lights_punctual: the square of a linear ramp between the cosines of the two half-angles.
+#[inline(always)]
+fn spot_share<S: Simd>(
+    simd: S,
+    to_light: V3<S::f32s>,
+    direction: Vec3,
+    cos_inner: f32,
+    cos_outer: f32,
+) -> S::f32s {
+    let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
+    let cosine = V3::splat(simd, -direction).dot(to_light);
+    let ramp = (cosine - cos_outer) / (cos_inner - cos_outer).max(1e-4);
+    let ramp = ramp.max(zero).min(one);
+    ramp * ramp
+}
+
+/// Records what the rays in `worker.rays` see, with normals if they are kept.
+pub(super) fn store_seen<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
+    let Worker { rays, seen, .. } = worker;
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for at in (0..rays.len()).step_by(S::f32s::LEN) {
+                store_seen_packet(simd, frame, at, rays, seen);
+            }
+        },
+    );
+}
+
+#[inline(always)]
+fn store_seen_packet<S: Simd>(simd: S, frame: &Frame<'_>, at: usize, rays: &RayQueue, seen: &mut [Seen]) {
+    let lanes = at..at + S::f32s::LEN;
+    let hits = Hits::new(&rays.primitive[lanes.clone()]);
+    for lane in 0..(rays.len() - at).min(S::f32s::LEN) {
+        seen[rays.sample[at + lane] as usize] = Seen::NOTHING;
+    }
+    if hits.active == 0 {
+        return;
+    }
+    let direction = rays.direction.load::<S>(simd, at);
+    let t = S::f32s::from_slice(simd, &rays.t[lanes]);
+    let surfaces = surfaces(simd, frame, &hits, rays.origin.load(simd, at), direction, t);
+    let normal = View::new(simd, &surfaces, direction).normal;
+    for lane in hits.lanes() {
+        let normal = normal.lane(lane).into();
+        seen[rays.sample[at + lane] as usize] =
+            Seen { primitive: rays.primitive[at + lane], t: rays.t[at + lane], normal };
+    }
+}

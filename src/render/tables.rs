@@ -1,0 +1,138 @@
+//! What shading reads of a scene, flattened for gathering into lanes. Made once a scene.
+
+use crate::geometry::Opaque;
+use crate::scene::material::{ColorSource, Model};
+use crate::scene::{Material, Scene};
+use glam::Vec3;
+
+/// Numbers of a material, in the order in which shading reads them.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(usize)]
+pub enum Row {
+    /// First of three: surface colour, where it is constant.
+    #[default]
+    Color = 0,
+    /// First of three: ambient factor.
+    Ambient = 3,
+    /// First of three: diffuse factor.
+    Diffuse = 6,
+    /// First of three: highlight colour.
+    Specular = 9,
+    /// First of three: what of the local light is left, 1 - transparency.
+    Opacity = 12,
+    /// First of three: light given off, where it is constant.
+    Emission = 15,
+    /// Blinn-Phong exponent.
+    Shininess = 18,
+    /// 0 to 1, metallic-roughness only.
+    Metallic = 19,
+    /// 0 to 1, metallic-roughness only; negative marks a Phong-type material.
+    Roughness = 20,
+}
+
+/// Numbers a material has.
+pub const ROWS: usize = 21;
+
+/// One material, flattened.
+#[derive(Clone, Debug)]
+pub struct FlatMaterial {
+    /// The numbers that [`Row`] names.
+    pub rows: [f32; ROWS],
+    /// Texture of the colour.
+    pub color_texture: Option<u32>,
+    /// Texture of the emission.
+    pub emission_texture: Option<u32>,
+    /// Whether it has a highlight.
+    pub shiny: bool,
+    /// Whether it is metallic-roughness.
+    pub metallic_roughness: bool,
+    /// Whether it reflects or refracts rays.
+    pub secondary: bool,
+}
+
+/// Metallic-roughness surfaces smoother than this mirror and refract rays.
+const MIRROR_ROUGHNESS: f32 = 0.1;
+
+impl FlatMaterial {
+    fn new(material: &Material) -> Self {
+        let constant = |source: ColorSource| match source {
+            ColorSource::Constant(color) => (color, None),
+            ColorSource::Texture(texture) => (Vec3::ZERO, Some(texture)),
+        };
+        let (color, color_texture) = constant(material.color);
+        let (emission, emission_texture) = constant(material.emission);
+        let mut rows = [0.0; ROWS];
+        let mut put = |row: Row, values: &[f32]| {
+            rows[row as usize..row as usize + values.len()].copy_from_slice(values);
+        };
+        put(Row::Color, &color.to_array());
+        put(Row::Opacity, &(Vec3::ONE - material.transparency).to_array());
+        put(Row::Emission, &emission.to_array());
+        let mut smooth = true;
+        match material.model {
+            Model::Phong { ambient, diffuse, specular, shininess } => {
+                put(Row::Ambient, &ambient.to_array());
+                put(Row::Diffuse, &diffuse.to_array());
+                put(Row::Specular, &specular.to_array());
+                put(Row::Shininess, &[shininess]);
+                put(Row::Roughness, &[-1.0]);
+            }
+            Model::MetallicRoughness { ambient, metallic, roughness } => {
+                put(Row::Ambient, &ambient.to_array());
+                put(Row::Metallic, &[metallic]);
+                put(Row::Roughness, &[roughness]);
+                smooth = roughness < MIRROR_ROUGHNESS;
+            }
+        }
+        let metallic_roughness = matches!(material.model, Model::MetallicRoughness { .. });
+        let mirrors = metallic_roughness || material.reflectivity != Vec3::ZERO;
+        Self {
+            shiny: rows[Row::Specular as usize..][..3] != [0.0; 3],
+            rows,
+            color_texture,
+            emission_texture,
+            metallic_roughness,
+            secondary: smooth && (mirrors || material.is_transparent()),
+        }
+    }
+}
+
+/// Flattened materials and what shadow rays need to know of primitives.
+#[derive(Debug, Default)]
+pub struct Tables {
+    /// The scene that they belong to.
+    pub generation: Option<u64>,
+    /// As the scene's materials.
+    pub materials: Vec<FlatMaterial>,
+    /// For each primitive whether it blocks all light; empty where every one does.
+    pub opaque: Vec<bool>,
+    /// Objects that bound a transparent body.
+    pub transparent_bodies: Vec<u32>,
+}
+
+impl Tables {
+    /// The tables of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let material_of = |object: u32| &scene.materials[scene.objects[object as usize].material as usize];
+        let transparent = scene.objects.iter().any(|o| scene.materials[o.material as usize].is_transparent());
+        let opaque = if transparent {
+            scene.geometry.ids.iter().map(|id| !material_of(id.object).is_transparent()).collect()
+        } else {
+            Vec::new()
+        };
+        let transparent_bodies = (0..scene.objects.len() as u32)
+            .filter(|&o| scene.objects[o as usize].body && material_of(o).is_transparent())
+            .collect();
+        Self {
+            generation: Some(scene.generation),
+            materials: scene.materials.iter().map(FlatMaterial::new).collect(),
+            opaque,
+            transparent_bodies,
+        }
+    }
+
+    /// What blocks all light.
+    pub fn opaque(&self) -> Opaque<'_> {
+        if self.opaque.is_empty() { Opaque::All } else { Opaque::Listed(&self.opaque) }
+    }
+}

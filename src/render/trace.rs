@@ -1,0 +1,82 @@
+//! Closest hits for a queue of rays.
+
+use super::frame::Frame;
+use super::queue::RayQueue;
+use super::tile::Worker;
+use crate::geometry::{ClosestHit, Packet, Search, SphereTerms, Stack};
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+
+/// Finds the closest hits of the secondary rays in `worker.rays`.
+pub(super) fn closest_hits<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
+    let search = Search::new(&frame.scene.geometry, frame.plan.tree);
+    trace_queue(simd, &search, 0.0, f32::INFINITY, &mut worker.rays, &mut worker.stack);
+}
+
+/// Finds the closest hits of the rays from the eye in `worker.rays`.
+pub(super) fn primary_hits<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
+    let search = eye_search(frame);
+    trace_queue(simd, &search, frame.camera.near, frame.camera.far, &mut worker.rays, &mut worker.stack);
+    worker.stats.rays.primary += worker.rays.len() as u64;
+}
+
+/// Tests the rays from the eye that start at `first` against one primitive only. Misses keep no primitive.
+pub(super) fn test_primitive<S: Simd>(simd: S, frame: &Frame<'_>, primitive: u32, first: usize, rays: &mut RayQueue) {
+    let search = eye_search(frame);
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for_each_packet(simd, &search, rays, first, frame.camera.near, frame.camera.far, |packet, visitor| {
+                search.test_one(simd, primitive, packet, visitor);
+            });
+        },
+    );
+}
+
+/// A search by rays that share the eye.
+fn eye_search<'a>(frame: &Frame<'a>) -> Search<'a> {
+    let sphere_terms: SphereTerms<'a> = frame.sphere_terms;
+    Search { sphere_terms, ..Search::new(&frame.scene.geometry, frame.plan.tree) }
+}
+
+fn trace_queue<S: Simd>(
+    simd: S,
+    search: &Search<'_>,
+    t_min: f32,
+    t_max: f32,
+    rays: &mut RayQueue,
+    stack: &mut Stack,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for_each_packet(simd, search, rays, 0, t_min, t_max, |packet, visitor| {
+                search.traverse(simd, packet, stack, visitor);
+            });
+        },
+    );
+}
+
+/// Calls `find` for each packet of the queue from `first` on, and stores what it found.
+#[inline(always)]
+fn for_each_packet<S: Simd>(
+    simd: S,
+    search: &Search<'_>,
+    rays: &mut RayQueue,
+    first: usize,
+    t_min: f32,
+    t_max: f32,
+    mut find: impl FnMut(&Packet<S>, &mut ClosestHit<S>),
+) {
+    rays.pad();
+    let (t_min, t_max) = (S::f32s::splat(simd, t_min), S::f32s::splat(simd, t_max));
+    for at in (first..rays.len()).step_by(S::f32s::LEN) {
+        let packet = Packet::new(simd, search.geometry, rays.origin.load(simd, at), rays.direction.load(simd, at));
+        let mut visitor = ClosestHit::new(simd, t_min, t_max);
+        find(&packet, &mut visitor);
+        visitor.t.store_slice(&mut rays.t[at..at + S::f32s::LEN]);
+        visitor.primitive.store_slice(&mut rays.primitive[at..at + S::f32s::LEN]);
+    }
+    // The last packet's spare lanes repeated the last ray, and found what it found.
+    rays.clear_padding();
+}
