@@ -16,6 +16,7 @@ pub mod light;
 pub mod limits;
 pub mod material;
 pub mod object;
+pub mod path;
 pub mod texture;
 
 pub use builtin::builtin;
@@ -26,6 +27,7 @@ pub use light::Light;
 pub use limits::Limits;
 pub use material::Material;
 pub use object::Object;
+pub use path::CameraPath;
 pub use texture::Texture;
 
 use crate::geometry::{Aabb, Geometry};
