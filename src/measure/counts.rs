@@ -1,5 +1,6 @@
 //! What a scene holds, in numbers.
 
+use crate::geometry::PrimitiveKind;
 use crate::scene::texture::Texture;
 use crate::scene::{Material, Object, Scene};
 use serde::Serialize;
@@ -24,14 +25,15 @@ pub struct SceneCounts {
 impl SceneCounts {
     /// Counts `scene`.
     pub fn of(scene: &Scene) -> Self {
+        let geometry = &scene.geometry;
         let texels: usize = scene.textures.iter().map(texture_bytes).sum();
         let tables =
             scene.objects.capacity() * size_of::<Object>() + scene.materials.capacity() * size_of::<Material>();
         Self {
-            scene_bytes: (texels + tables) as u64,
-            triangles: 0,
-            spheres: 0,
-            primitives: 0,
+            scene_bytes: (texels + tables + geometry.bytes()) as u64,
+            triangles: geometry.count(PrimitiveKind::Triangle) as u64,
+            spheres: geometry.count(PrimitiveKind::Sphere) as u64,
+            primitives: geometry.len() as u64,
             lights: (scene.lights.len() + usize::from(scene.headlight)) as u64,
             objects: scene.objects.len() as u64,
         }
