@@ -74,8 +74,9 @@ fn for_each_packet<S: Simd>(
         let packet = Packet::new(simd, search.geometry, rays.origin.load(simd, at), rays.direction.load(simd, at));
         let mut visitor = ClosestHit::new(simd, t_min, t_max);
         find(&packet, &mut visitor);
-        // Lanes beyond the end repeat the last ray; the queue has room for them.
         visitor.t.store_slice(&mut rays.t[at..at + S::f32s::LEN]);
         visitor.primitive.store_slice(&mut rays.primitive[at..at + S::f32s::LEN]);
     }
+    // The last packet's spare lanes repeated the last ray, and found what it found.
+    rays.clear_padding();
 }
