@@ -1,6 +1,5 @@
 //! One open window: who gets which event, when to trace, when to draw.
 
-use super::blit::Blit;
 use super::capture::{Capture, PointerHost};
 use super::error::AppError;
 use super::gpu::{Gpu, Target};
@@ -9,6 +8,7 @@ use super::input::{Command, Keys};
 use super::layer::Layer;
 use super::overlay::{self, Change, Shown, View};
 use super::pacing::{Limiter, Rates};
+use super::present::{Present, Presenter};
 use super::tracer::{Job, TracedFrame, Tracer, Word};
 use super::walker::{self, Walker};
 use super::{AppExit, AppOptions};
@@ -39,7 +39,8 @@ const PIXELS_PER_NOTCH: f64 = 40.0;
 pub struct Session {
     tracer: Tracer,
     layer: Layer,
-    blit: Blit,
+    presenter: Presenter,
+    present: Present,
     gpu: Gpu,
     window: Arc<Window>,
     display: OwnedDisplayHandle,
@@ -86,7 +87,8 @@ impl Session {
         let mut session = Self {
             tracer: Tracer::start(options.scene.clone(), rates.display, word)?,
             layer: Layer::new(&gpu, &window),
-            blit: Blit::new(&gpu.device, gpu.format()),
+            presenter: Presenter::new(&gpu, options.present),
+            present: options.present,
             gpu,
             window,
             display,
@@ -291,20 +293,17 @@ impl Session {
 
     fn draw(&mut self, now: Instant) -> Result<(), AppError> {
         self.redraw_requested = false;
-        if let Some(TracedFrame { film, .. }) = self.fresh.take() {
-            self.blit.upload(&self.gpu.device, &self.gpu.queue, film.width(), film.height(), film.rgba());
-            self.tracer.recycle(film);
+        if let Some(TracedFrame { film, .. }) = self.fresh.take()
+            && let Some(shown) = self.presenter.set_frame(&self.gpu, film)
+        {
+            self.tracer.recycle(shown);
         }
         if self.figures.is_due(now) {
             self.paint_overlay(now);
         }
         self.picture.met(now);
         match self.gpu.acquire() {
-            Target::Ready(target) => {
-                let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                self.blit.draw(&mut encoder, &target.texture, self.layer.picture(&self.gpu));
-                self.gpu.present(encoder, target);
-            }
+            Target::Ready(target) => self.presenter.show(&self.gpu, target),
             // Without a size there is nothing to ask for until the window comes back.
             Target::Later if self.gpu.size().0 == 0 || self.gpu.size().1 == 0 => {}
             Target::Later => self.picture.demand(now, ASK_AGAIN),
@@ -331,11 +330,13 @@ impl Session {
         let mut changes = Vec::new();
         let shown = self.shown;
         let pointer_is_free = !self.capture.is_active();
-        let again = self.layer.paint(&self.gpu, &self.blit, &self.window, pointer_is_free, |ui| {
+        let painting = self.layer.run(self.gpu.size(), &self.window, pointer_is_free, |ui| {
             changes.extend(overlay::show(ui, &view, shown));
         });
         self.figures.met(now);
-        if let Some(delay) = again {
+        let Some(painting) = painting else { return };
+        self.presenter.set_overlay(&self.gpu, &painting.job, painting.textures);
+        if let Some(delay) = painting.again {
             self.figures.demand(now + delay, self.rates.display);
         }
         if shown.overlay && !resting {
@@ -371,7 +372,7 @@ impl Session {
             return Err(AppError::GraphicsLost(reason));
         }
         self.gpu = Gpu::new(&self.window, &self.display).map_err(AppError::GraphicsLost)?;
-        self.blit = Blit::new(&self.gpu.device, self.gpu.format());
+        self.presenter = Presenter::new(&self.gpu, self.present);
         self.layer = Layer::new(&self.gpu, &self.window);
         self.device_made = now;
         self.posted = None;
