@@ -10,3 +10,5 @@ pub mod measure;
 pub mod picture;
 pub mod render;
 pub mod scene;
+
+pub mod app;

@@ -1,0 +1,60 @@
+//! The window: input in, traced frames and the overlay out.
+//!
+//! The main thread runs the event loop: it gathers input, moves the walker, uploads, draws and presents, each a
+//! matter of milliseconds. Frames are traced on a thread of their own ([`tracer`]), so that neither input nor the
+//! overlay ever waits for one.
+//!
+//! Architecture invariant: with nothing moved and nothing changed, nothing is traced, drawn or woken up for.
+
+pub mod blit;
+pub mod error;
+pub mod history;
+pub mod input;
+pub mod overlay;
+pub mod walker;
+
+mod capture;
+mod display;
+mod gpu;
+mod layer;
+mod look;
+mod pacing;
+mod session;
+mod tracer;
+mod viewer;
+
+pub use error::AppError;
+
+use crate::scene::{Camera, Scene};
+use crate::settings::Settings;
+use std::sync::Arc;
+
+/// What to open the window on.
+#[derive(Clone, Debug)]
+pub struct AppOptions {
+    /// What to walk through.
+    pub scene: Arc<Scene>,
+    /// Where the walk starts.
+    pub camera: Camera,
+    /// How frames are traced at first.
+    pub settings: Settings,
+    /// Size of the window's inside in physical pixels.
+    pub size: (u32, u32),
+}
+
+/// Where things stood when the user closed the window.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AppExit {
+    /// The last view.
+    pub camera: Camera,
+    /// The last settings.
+    pub settings: Settings,
+}
+
+/// Opens the window and runs until it is closed. To be called on the main thread, once in a process.
+///
+/// # Errors
+/// [`AppError::NoDisplay`] when no window can be had, before anything was shown; the others when it had to close.
+pub fn run(options: AppOptions) -> Result<AppExit, AppError> {
+    viewer::run(options)
+}

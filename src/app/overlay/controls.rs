@@ -1,0 +1,152 @@
+//! A control for every setting, made from the list of settings, and the controls of the view.
+
+use super::{Change, View, theme};
+use crate::app::walker::FOV_RANGE;
+use crate::settings::{Choice, Kind, ROWS, Row};
+use egui::{ComboBox, DragValue, Grid, Response, RichText, Slider, Ui};
+
+/// Whole-number ranges wider than this get a number to drag: on a slider every pixel would be a leap.
+const WIDEST_SLIDER: f64 = 128.0;
+
+/// One row per setting: name, control, and what the value promises.
+pub fn settings(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
+    let mut settings = view.settings.clone();
+    Grid::new("settings").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
+        for row in ROWS {
+            let value = (row.get)(&settings);
+            let name = ui.label(RichText::new(row.name).color(theme::WEAK)).on_hover_text(row.help);
+            let (response, wanted) = control(ui, row, &value, view);
+            response.labelled_by(name.id).on_hover_text(row.help);
+            if let Some(promise) = row.promise(&value) {
+                ui.label(RichText::new(promise.to_string()).small().color(theme::promise_color(promise)));
+            }
+            ui.end_row();
+            if let Some(wanted) = wanted {
+                // The control offers allowed values only; should the row still refuse, the value stays.
+                let _ = (row.set)(&mut settings, &wanted);
+            }
+        }
+    });
+    if settings != *view.settings {
+        changes.push(Change::Settings(settings));
+    }
+}
+
+/// The control of a row, and the value that was asked for, as it would be typed.
+fn control(ui: &mut Ui, row: &Row, value: &str, view: &View<'_>) -> (Response, Option<String>) {
+    match &row.kind {
+        Kind::Choice([Choice { value: "on", .. }, Choice { value: "off", .. }]) => {
+            let mut on = value == "on";
+            let response = ui.checkbox(&mut on, "");
+            let wanted = response.changed().then(|| if on { "on" } else { "off" }.to_owned());
+            (response, wanted)
+        }
+        Kind::Choice(choices) => choice(ui, row, choices, value),
+        &Kind::Number { min, max, integer, .. } => number(ui, value, min, max, integer, view),
+    }
+}
+
+fn choice(ui: &mut Ui, row: &Row, choices: &[Choice], value: &str) -> (Response, Option<String>) {
+    let mut wanted = None;
+    let combo = ComboBox::from_id_salt(row.name).selected_text(value);
+    let shown = combo.show_ui(ui, |ui| {
+        for choice in choices {
+            let entry = ui.selectable_label(choice.value == value, choice.value);
+            if entry.on_hover_text(choice.promise.to_string()).clicked() && choice.value != value {
+                wanted = Some(choice.value.to_owned());
+            }
+        }
+    });
+    (shown.response, wanted)
+}
+
+fn number(ui: &mut Ui, value: &str, min: f64, max: f64, integer: bool, view: &View<'_>) -> (Response, Option<String>) {
+    // The one value that is no number is the depth "scene".
+    let before = value.parse().unwrap_or_else(|_| f64::from(view.scene.render.max_depth));
+    let mut after = before;
+    let response = if integer && max - min > WIDEST_SLIDER {
+        ui.add(DragValue::new(&mut after).range(min..=max).speed(0.05).fixed_decimals(0))
+    } else {
+        let slider = Slider::new(&mut after, min..=max);
+        // Ranges from zero are those of thresholds and weights, where the small values matter.
+        let slider = if integer { slider.integer() } else { slider.logarithmic(min == 0.0).smallest_positive(1e-4) };
+        ui.add(slider.custom_formatter(|value, _| rounded(value)))
+    };
+    let wanted = (response.changed() && after != before).then(|| after.to_string());
+    (response, wanted)
+}
+
+/// Cameras of the scene, speed, field of view and mouse.
+pub fn view(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new("Camera").color(theme::WEAK));
+        if ui.button("start").on_hover_text("where the walk started (Home)").clicked() {
+            changes.push(Change::Home);
+        }
+        for (index, camera) in view.scene.cameras.iter().enumerate() {
+            if ui.button(&camera.name).on_hover_text("a camera of the scene").clicked() {
+                changes.push(Change::Camera(index));
+            }
+        }
+    });
+    Grid::new("view").num_columns(2).spacing([8.0, 4.0]).show(ui, |ui| {
+        let mut speed = view.speed;
+        let drag = DragValue::new(&mut speed).range(0.0..=f64::MAX).speed(view.speed * 0.01).suffix(" m/s");
+        labelled(ui, "speed", "metres a second; the wheel changes it by a tenth", |ui| {
+            ui.add(drag.custom_formatter(|speed, _| significant(speed)))
+        })
+        .then(|| changes.push(Change::Speed(speed)));
+        let mut fov = view.fov;
+        labelled(ui, "field of view", "vertical, in degrees", |ui| {
+            ui.add(Slider::new(&mut fov, FOV_RANGE).custom_formatter(|fov, _| rounded(fov)).suffix("°"))
+        })
+        .then(|| changes.push(Change::Fov(fov)));
+        let mut sensitivity = view.sensitivity;
+        labelled(ui, "mouse", "degrees of turn per count of the mouse", |ui| {
+            let slider = Slider::new(&mut sensitivity, 0.01..=1.0).logarithmic(true).suffix("°");
+            ui.add(slider.custom_formatter(|sensitivity, _| rounded(sensitivity)))
+        })
+        .then(|| changes.push(Change::Sensitivity(sensitivity)));
+        let mut invert = view.invert_look;
+        labelled(ui, "invert look", "mouse forward looks down", |ui| ui.checkbox(&mut invert, ""))
+            .then(|| changes.push(Change::InvertLook(invert)));
+    });
+}
+
+/// A named control; true when it was changed.
+fn labelled(ui: &mut Ui, name: &str, help: &str, add: impl FnOnce(&mut Ui) -> Response) -> bool {
+    let label = ui.label(RichText::new(name).color(theme::WEAK));
+    let response = add(ui).labelled_by(label.id).on_hover_text(help);
+    ui.end_row();
+    response.changed()
+}
+
+/// At most four decimals. A formatter and not the widget's own rounding, which would change a value by showing it.
+fn rounded(value: f64) -> String {
+    ((value * 1e4).round() / 1e4).to_string()
+}
+
+/// Three significant figures, whatever the size of the scene.
+fn significant(value: f64) -> String {
+    let digits = if value > 0.0 { (2.0 - value.log10().floor()).clamp(0.0, 9.0) as usize } else { 2 };
+    format!("{value:.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{rounded, significant};
+
+    #[test]
+    fn values_show_four_decimals_at_most() {
+        for (value, text) in [(16.0 / 255.0, "0.0627"), (1.0 / 512.0, "0.002"), (60.0, "60"), (-0.5, "-0.5")] {
+            assert_eq!(rounded(value), text);
+        }
+    }
+
+    #[test]
+    fn speeds_show_three_figures() {
+        for (speed, text) in [(1234.0, "1234"), (12.34, "12.3"), (1.5, "1.50"), (0.001234, "0.00123"), (0.0, "0.00")] {
+            assert_eq!(significant(speed), text);
+        }
+    }
+}

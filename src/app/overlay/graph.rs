@@ -1,0 +1,61 @@
+//! The frame-time graph: one bar a frame, newest on the right, and the percentiles below.
+
+use super::theme;
+use crate::app::history::History;
+use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, vec2};
+
+/// Height in points.
+const HEIGHT: f32 = 64.0;
+/// Width of a bar in points, its gap included.
+const BAR: f32 = 2.0;
+/// Marks in milliseconds: 60, 30, 20 and so on frames a second. The two highest that fit are drawn.
+const MARKS: [f64; 8] = [1.0, 5.0, 16.7, 33.3, 50.0, 100.0, 500.0, 2000.0];
+
+/// Draws the graph.
+pub fn show(ui: &mut Ui, history: &History) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "frame times"));
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 3.0, Color32::from_rgb(10, 11, 15));
+    let bars = (rect.width() / BAR) as usize;
+    let shown: Vec<f64> = history.milliseconds().skip(history.milliseconds().len().saturating_sub(bars)).collect();
+    let top = scale(&shown);
+    let y = |milliseconds: f64| rect.bottom() - rect.height() * (milliseconds / top).clamp(0.0, 1.0) as f32;
+    // One mesh for all bars: a shape each would cost the tessellator more than the rest of the panel.
+    let mut mesh = Mesh::default();
+    for (i, &milliseconds) in shown.iter().rev().enumerate() {
+        let right = rect.right() - i as f32 * BAR;
+        let bar = Rect::from_min_max(Pos2::new(right - BAR + 0.5, y(milliseconds)), Pos2::new(right, rect.bottom()));
+        mesh.add_colored_rect(bar, theme::ACCENT);
+    }
+    painter.add(Shape::mesh(mesh));
+    for mark in MARKS.into_iter().filter(|&mark| mark < 0.95 * top).rev().take(2) {
+        let height = y(mark);
+        painter.hline(rect.x_range(), height, Stroke::new(1.0, Color32::from_rgba_premultiplied(60, 60, 60, 60)));
+        let place = Pos2::new(rect.left() + 4.0, height);
+        painter.text(place, Align2::LEFT_CENTER, format!("{mark} ms"), FontId::proportional(10.0), theme::WEAK);
+    }
+    let figure = |percent| history.percentile(percent).map_or_else(|| "-".to_owned(), |ms| format!("{ms:.1}"));
+    let line =
+        format!("median {}   p95 {}   p99 {}   max {} ms", figure(50.0), figure(95.0), figure(99.0), figure(100.0));
+    ui.label(RichText::new(line).small().color(theme::WEAK))
+        .on_hover_text("frame times that so many percent stay within");
+}
+
+/// The milliseconds at the top: room for the highest bar, and no lower than a display's frame.
+fn scale(shown: &[f64]) -> f64 {
+    let highest = shown.iter().copied().fold(0.0, f64::max);
+    (1.15 * highest).max(20.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::scale;
+
+    #[test]
+    fn the_highest_bar_fits() {
+        assert_eq!(scale(&[]), 20.0);
+        assert_eq!(scale(&[3.0, 7.0]), 20.0);
+        assert!(scale(&[10.0, 200.0]) > 200.0);
+    }
+}

@@ -1,0 +1,186 @@
+//! The overlay: a pure function of what there is to see, answering with what the user asked to change.
+//!
+//! Architecture invariant: nothing here knows of a window, a device or a thread, so all of it is tested
+//! without any of them.
+
+mod controls;
+mod figures;
+mod graph;
+pub mod theme;
+
+use super::history::History;
+use super::input::HELP;
+use crate::render::FrameStats;
+use crate::scene::Scene;
+use crate::settings::{PRESETS, Settings};
+use egui::{CollapsingHeader, RichText, Ui};
+
+/// Width of the panel's contents in points.
+const WIDTH: f32 = 336.0;
+/// Distance from the window's edge in points.
+const MARGIN: f32 = 8.0;
+/// Most warnings of a scene that are listed.
+const WARNINGS: usize = 5;
+
+/// Everything the overlay shows.
+#[derive(Debug)]
+pub struct View<'a> {
+    /// What is walked through.
+    pub scene: &'a Scene,
+    /// How frames are traced.
+    pub settings: &'a Settings,
+    /// What the last frame cost.
+    pub stats: &'a FrameStats,
+    /// Frame times.
+    pub history: &'a History,
+    /// Nothing was traced for a while.
+    pub resting: bool,
+    /// Size of the traced picture in pixels.
+    pub size: (u32, u32),
+    /// Walking speed in metres a second.
+    pub speed: f64,
+    /// Vertical field of view in degrees.
+    pub fov: f32,
+    /// Degrees of turn per count of the mouse.
+    pub sensitivity: f64,
+    /// Mouse forward looks down.
+    pub invert_look: bool,
+}
+
+/// What of the overlay is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// Anything at all.
+    pub overlay: bool,
+    /// The panel below the status line.
+    pub panel: bool,
+}
+
+impl Default for Shown {
+    fn default() -> Self {
+        Self { overlay: true, panel: true }
+    }
+}
+
+/// What the user asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// Trace with these settings.
+    Settings(Settings),
+    /// Go to the scene's camera of this index.
+    Camera(usize),
+    /// Go back to the start.
+    Home,
+    /// Walk at this speed, metres a second.
+    Speed(f64),
+    /// See this vertical field of view, degrees.
+    Fov(f32),
+    /// Turn by this many degrees per count of the mouse.
+    Sensitivity(f64),
+    /// Whether mouse forward looks down.
+    InvertLook(bool),
+    /// Open or close the panel.
+    TogglePanel,
+}
+
+/// Draws the overlay and returns what was asked for, in order.
+pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
+    let mut changes = Vec::new();
+    if !shown.overlay {
+        return changes;
+    }
+    let available = ui.ctx().content_rect();
+    egui::Area::new(egui::Id::unique("overlay"))
+        .fixed_pos(available.min + egui::vec2(MARGIN, MARGIN))
+        .default_size(available.size())
+        .constrain(false)
+        .show(ui.ctx(), |ui| {
+            let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(10.0).corner_radius(6.0);
+            frame.show(ui, |ui| {
+                ui.set_max_width(WIDTH.min(available.width() - 4.0 * MARGIN).max(1.0));
+                status_line(ui, view, shown, &mut changes);
+                if shown.panel {
+                    let height = available.bottom() - ui.cursor().top() - 3.0 * MARGIN;
+                    egui::ScrollArea::vertical().max_height(height.max(1.0)).show(ui, |ui| {
+                        ui.set_width(ui.available_width());
+                        panel(ui, view, &mut changes);
+                    });
+                }
+            });
+        });
+    changes
+}
+
+/// "62 fps | 14.2 ms | 1280x720", and the switch of the panel.
+fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Change>) {
+    ui.horizontal(|ui| {
+        let rate = match view.history.rate() {
+            _ if view.resting => "idle".to_owned(),
+            Some(rate) if rate < 9.95 => format!("{rate:.1} fps"),
+            Some(rate) => format!("{rate:.0} fps"),
+            None => "tracing".to_owned(),
+        };
+        let time = view.history.last().map_or_else(String::new, |ms| format!(" | {ms:.1} ms"));
+        let (width, height) = view.size;
+        let line = format!("{rate}{time} | {width}x{height}");
+        ui.label(RichText::new(line).size(15.0).strong().color(theme::STRONG));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let name = if shown.panel { "Hide panel" } else { "Show panel" };
+            if ui.small_button(name).on_hover_text("F1 or Tab; H hides everything").clicked() {
+                changes.push(Change::TogglePanel);
+            }
+        });
+    });
+}
+
+fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
+    graph::show(ui, view.history);
+    section(ui, "Settings", true, |ui| {
+        presets(ui, view, changes);
+        controls::settings(ui, view, changes);
+    });
+    section(ui, "Last frame", true, |ui| figures::show(ui, view.stats));
+    section(ui, "View", true, |ui| controls::view(ui, view, changes));
+    section(ui, "Scene", false, |ui| scene(ui, view.scene));
+    section(ui, "Keys", false, keys);
+}
+
+fn section(ui: &mut Ui, title: &str, open: bool, add_contents: impl FnOnce(&mut Ui)) {
+    CollapsingHeader::new(RichText::new(title).strong().color(theme::STRONG)).default_open(open).show(ui, add_contents);
+}
+
+fn presets(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Preset").color(theme::WEAK));
+        for preset in PRESETS {
+            let settings = (preset.settings)();
+            let selected = *view.settings == settings;
+            if ui.selectable_label(selected, preset.name).on_hover_text(preset.help).clicked() && !selected {
+                changes.push(Change::Settings(settings));
+            }
+        }
+    });
+}
+
+fn scene(ui: &mut Ui, scene: &Scene) {
+    let count = |number: usize, one: &str, many: &str| format!("{number} {}", if number == 1 { one } else { many });
+    ui.label(RichText::new(&scene.name).color(theme::STRONG));
+    let lights = if scene.headlight { "headlight".to_owned() } else { count(scene.lights.len(), "light", "lights") };
+    ui.label(format!("{}, {lights}", count(scene.objects.len(), "object", "objects")));
+    for warning in scene.warnings.iter().take(WARNINGS) {
+        ui.label(RichText::new(warning.to_string()).color(theme::WARNING));
+    }
+    if scene.warnings.len() > WARNINGS {
+        ui.label(RichText::new(format!("and {} more", scene.warnings.len() - WARNINGS)).color(theme::WARNING));
+    }
+}
+
+fn keys(ui: &mut Ui) {
+    egui::Grid::new("keys").num_columns(2).spacing([16.0, 3.0]).show(ui, |ui| {
+        for (keys, what) in HELP {
+            ui.label(RichText::new(*keys).color(theme::STRONG));
+            ui.label(RichText::new(*what).color(theme::WEAK));
+            ui.end_row();
+        }
+    });
+}

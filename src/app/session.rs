@@ -1,0 +1,446 @@
+//! One open window: who gets which event, when to trace, when to draw.
+
+use super::blit::Blit;
+use super::capture::{Capture, PointerHost};
+use super::error::AppError;
+use super::gpu::{Gpu, Target};
+use super::history::History;
+use super::input::{Command, Keys};
+use super::layer::Layer;
+use super::overlay::{self, Change, Shown, View};
+use super::pacing::{Limiter, Rates};
+use super::tracer::{Job, TracedFrame, Tracer, Word};
+use super::walker::{self, Walker};
+use super::{AppExit, AppOptions};
+use crate::render::FrameStats;
+use crate::scene::Scene;
+use crate::settings::Settings;
+use glam::DVec2;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use winit::dpi::{PhysicalPosition, PhysicalSize};
+use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
+use winit::keyboard::{KeyCode, PhysicalKey};
+use winit::window::{CursorGrabMode, Window};
+
+/// Between two steps of the walker: finer than any display, so that a frame starts from a fresh place.
+const STEP: Duration = Duration::from_millis(8);
+/// Until a surface that had nothing to draw on is asked again.
+const ASK_AGAIN: Duration = Duration::from_millis(100);
+/// A device lost twice within this time is not worth a third try.
+const DEVICE_TRIAL: Duration = Duration::from_secs(10);
+/// Most pixels of a traced picture (8K): larger windows show it enlarged.
+const MAX_PIXELS: f64 = 7680.0 * 4320.0;
+/// Pixels of smooth scrolling that count as one notch of a wheel.
+const PIXELS_PER_NOTCH: f64 = 40.0;
+
+/// Everything that lives as long as the window. Dropped from the top: the tracer is joined before the window goes.
+pub struct Session {
+    tracer: Tracer,
+    layer: Layer,
+    blit: Blit,
+    gpu: Gpu,
+    window: Arc<Window>,
+    display: OwnedDisplayHandle,
+    scene: Arc<Scene>,
+    settings: Settings,
+    walker: Walker,
+    keys: Keys,
+    capture: Capture,
+    /// Where the pointer is, in physical pixels.
+    pointer: DVec2,
+    history: History,
+    stats: FrameStats,
+    shown: Shown,
+    posted: Option<Job>,
+    fresh: Option<TracedFrame>,
+    rates: Rates,
+    /// When to present, and when to draw the overlay before that.
+    picture: Limiter,
+    figures: Limiter,
+    redraw_requested: bool,
+    occluded: bool,
+    /// When the walker last took a step, while keys are held.
+    stepped: Option<Instant>,
+    device_made: Instant,
+}
+
+impl Session {
+    /// Opens the window and starts the tracer, which sends `word` of its frames.
+    pub fn open(
+        event_loop: &ActiveEventLoop,
+        options: &AppOptions,
+        word: impl Fn(Word) + Send + 'static,
+    ) -> Result<Self, AppError> {
+        let attributes = Window::default_attributes()
+            .with_title(format!("raywalk - {}", options.scene.name))
+            .with_inner_size(PhysicalSize::new(options.size.0, options.size.1));
+        let window = event_loop.create_window(attributes).map_err(|error| AppError::NoDisplay(error.to_string()))?;
+        let window = Arc::new(window);
+        let display = event_loop.owned_display_handle();
+        let gpu = Gpu::new(&window, &display).map_err(AppError::NoDisplay)?;
+        let millihertz = window.current_monitor().and_then(|monitor| monitor.refresh_rate_millihertz());
+        let rates = Rates::new(millihertz, gpu.is_software);
+        let now = Instant::now();
+        let mut session = Self {
+            tracer: Tracer::start(options.scene.clone(), rates.display, word)?,
+            layer: Layer::new(&gpu, &window),
+            blit: Blit::new(&gpu.device, gpu.format()),
+            gpu,
+            window,
+            display,
+            scene: options.scene.clone(),
+            settings: options.settings.clone(),
+            walker: Walker::new(options.camera, walker::extent(&options.scene)),
+            keys: Keys::default(),
+            capture: Capture::default(),
+            pointer: DVec2::ZERO,
+            history: History::default(),
+            stats: FrameStats::default(),
+            shown: Shown::default(),
+            posted: None,
+            fresh: None,
+            rates,
+            picture: Limiter::default(),
+            figures: Limiter::default(),
+            redraw_requested: false,
+            occluded: false,
+            stepped: None,
+            device_made: now,
+        };
+        session.repaint(now);
+        Ok(session)
+    }
+
+    /// Ends the session and says where it stood.
+    pub fn close(self) -> AppExit {
+        AppExit { camera: self.walker.camera(), settings: self.settings.clone() }
+    }
+
+    /// Passes an event to whom it concerns; true to close the window.
+    pub fn on_window_event(&mut self, event: &WindowEvent) -> Result<bool, AppError> {
+        let now = Instant::now();
+        match event {
+            WindowEvent::RedrawRequested => {
+                self.draw(now)?;
+                return Ok(false);
+            }
+            WindowEvent::KeyboardInput { event: key, is_synthetic, .. } => {
+                return Ok(self.on_key(now, key, *is_synthetic, event));
+            }
+            WindowEvent::CursorMoved { position, .. } => {
+                self.pointer = DVec2::new(position.x, position.y);
+                let turn = self.capture.pointer_moved(&WindowHost(&self.window), self.pointer);
+                self.walker.look(turn);
+            }
+            WindowEvent::MouseInput { state, button: MouseButton::Left, .. } if self.on_button(*state) => {
+                return Ok(false);
+            }
+            WindowEvent::MouseWheel { delta, .. } if self.capture.is_active() || !self.layer.is_under_pointer() => {
+                self.walker.scroll(notches(*delta));
+                self.repaint(now);
+                return Ok(false);
+            }
+            WindowEvent::ModifiersChanged(modifiers) => self.keys.set_ctrl(modifiers.state().control_key()),
+            WindowEvent::Focused(false) => {
+                self.step(now);
+                self.keys.clear();
+                self.capture.release(&WindowHost(&self.window));
+            }
+            WindowEvent::Resized(size) => {
+                self.gpu.resize(*size);
+                self.repaint(now);
+            }
+            WindowEvent::Occluded(occluded) => self.occluded = *occluded,
+            _ => {}
+        }
+        let of_the_mouse = matches!(
+            event,
+            WindowEvent::CursorMoved { .. } | WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. }
+        );
+        if !(of_the_mouse && self.capture.is_active()) && self.layer.on_event(&self.window, event) {
+            self.repaint(now);
+        }
+        Ok(false)
+    }
+
+    /// The mouse moved, in its own counts; concerns us while the pointer is locked.
+    pub fn on_device_motion(&mut self, delta: DVec2) {
+        let turn = self.capture.device_moved(delta);
+        self.walker.look(turn);
+    }
+
+    /// True to close the window.
+    fn on_key(&mut self, now: Instant, key: &KeyEvent, is_synthetic: bool, event: &WindowEvent) -> bool {
+        let typing = self.layer.wants_keyboard() && !self.capture.is_active();
+        self.step(now);
+        let command = match key.state {
+            ElementState::Released => {
+                self.keys.release(key.physical_key);
+                None
+            }
+            // A press made up at a change of focus is none.
+            ElementState::Pressed if is_synthetic => None,
+            ElementState::Pressed => self.keys.press(key.physical_key, key.repeat),
+        };
+        if typing {
+            // Letters belong to the text; of our keys only the chords go on.
+            self.keys.forget_holds();
+        }
+        match command {
+            Some(Command::Quit) => return true,
+            Some(_) if typing => {}
+            Some(Command::ReleasePointer) => self.capture.release(&WindowHost(&self.window)),
+            Some(Command::TogglePanel) => self.shown = Shown { overlay: true, panel: !self.shown.panel },
+            Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
+            Some(Command::Home) => self.walker.go_home(),
+            None => {}
+        }
+        // Tab opens the panel here; egui would walk through its widgets.
+        let is_tab = key.physical_key == PhysicalKey::Code(KeyCode::Tab);
+        let seen = !self.capture.is_active() && !is_tab && self.layer.on_event(&self.window, event);
+        if command.is_some() || (seen && typing) {
+            self.repaint(now);
+        }
+        false
+    }
+
+    /// The left button; true when the picture took it.
+    fn on_button(&mut self, state: ElementState) -> bool {
+        match state {
+            ElementState::Released => self.capture.button_up(),
+            ElementState::Pressed if self.capture.is_active() => return true,
+            ElementState::Pressed if self.layer.takes_click() => {}
+            ElementState::Pressed => {
+                self.layer.let_go();
+                self.capture.begin(&WindowHost(&self.window), self.pointer);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Takes the newest frame from the tracer, to be shown when it is time.
+    pub fn fetch_frame(&mut self) {
+        let Some(frame) = self.tracer.take() else { return };
+        let now = Instant::now();
+        self.history.record(frame.finished, frame.stats.frame_ms);
+        let present = self.stats.stages_ms.present;
+        self.stats = frame.stats.clone();
+        self.stats.stages_ms.present = present;
+        if let Some(missed) = self.fresh.replace(frame) {
+            self.tracer.recycle(missed.film);
+        }
+        self.picture.demand(now, self.rates.display);
+        if self.shown.overlay {
+            self.figures.demand(now, self.rates.figures);
+        }
+    }
+
+    /// Moves on, asks for frames and drawings as needed, and says when to be called again at the latest.
+    pub fn tick(&mut self, now: Instant) -> Option<Instant> {
+        self.step(now);
+        self.post();
+        let mut next = self.tracer.drop_outdated();
+        let mut call_at = |at: Instant| next = Some(next.map_or(at, |next: Instant| next.min(at)));
+        if self.stepped.is_some() {
+            call_at(now + STEP);
+        }
+        if !self.redraw_requested && !self.occluded {
+            if self.figures.is_due(now) {
+                self.picture.demand(now, self.rates.display);
+            }
+            if self.picture.is_due(now) {
+                self.redraw_requested = true;
+                self.window.request_redraw();
+            } else {
+                let figures = self.figures.due().filter(|&at| at > now);
+                figures.into_iter().chain(self.picture.due()).for_each(call_at);
+            }
+        }
+        next
+    }
+
+    /// Walks up to `now`, as far as keys were held until here.
+    fn step(&mut self, now: Instant) {
+        let motion = self.keys.motion();
+        if let Some(before) = self.stepped {
+            self.walker.walk(motion, now.saturating_duration_since(before).as_secs_f64());
+        }
+        self.stepped = motion.is_moving().then_some(now);
+    }
+
+    /// Asks for a frame when it would differ from the one last asked for.
+    fn post(&mut self) {
+        let (width, height) = picture_size(self.gpu.size());
+        if width == 0 || height == 0 {
+            return;
+        }
+        let job = Job { camera: self.walker.camera(), settings: self.settings.clone(), width, height };
+        if self.posted.as_ref() != Some(&job) {
+            self.posted = Some(job.clone());
+            self.tracer.post(job);
+        }
+    }
+
+    /// Something of the overlay changed: draw it at once, within the display's rate.
+    fn repaint(&mut self, now: Instant) {
+        self.figures.demand(now, self.rates.display);
+    }
+
+    fn draw(&mut self, now: Instant) -> Result<(), AppError> {
+        self.redraw_requested = false;
+        if let Some(TracedFrame { film, .. }) = self.fresh.take() {
+            self.blit.upload(&self.gpu.device, &self.gpu.queue, film.width(), film.height(), film.rgba());
+            self.tracer.recycle(film);
+        }
+        if self.figures.is_due(now) {
+            self.paint_overlay(now);
+        }
+        self.picture.met(now);
+        match self.gpu.acquire() {
+            Target::Ready(target) => {
+                let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                self.blit.draw(&mut encoder, &target.texture, self.layer.picture(&self.gpu));
+                self.gpu.present(encoder, target);
+            }
+            // Without a size there is nothing to ask for until the window comes back.
+            Target::Later if self.gpu.size().0 == 0 || self.gpu.size().1 == 0 => {}
+            Target::Later => self.picture.demand(now, ASK_AGAIN),
+            Target::Lost(reason) => self.replace_device(now, reason)?,
+        }
+        self.stats.stages_ms.present = 1e3 * now.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    fn paint_overlay(&mut self, now: Instant) {
+        let resting = self.history.is_resting(now) && !self.tracer.is_busy();
+        let view = View {
+            scene: &self.scene,
+            settings: &self.settings,
+            stats: &self.stats,
+            history: &self.history,
+            resting,
+            size: picture_size(self.gpu.size()),
+            speed: self.walker.speed(),
+            fov: self.walker.fov(),
+            sensitivity: self.walker.sensitivity,
+            invert_look: self.walker.invert_look,
+        };
+        let mut changes = Vec::new();
+        let shown = self.shown;
+        let pointer_is_free = !self.capture.is_active();
+        let again = self.layer.paint(&self.gpu, &self.blit, &self.window, pointer_is_free, |ui| {
+            changes.extend(overlay::show(ui, &view, shown));
+        });
+        self.figures.met(now);
+        if let Some(delay) = again {
+            self.figures.demand(now + delay, self.rates.display);
+        }
+        if shown.overlay && !resting {
+            // The last frame may have been shown: look again, to say so.
+            self.figures.demand_at(now + Duration::from_millis(300));
+        }
+        if !changes.is_empty() {
+            changes.into_iter().for_each(|change| self.apply(change));
+            self.repaint(now);
+        }
+    }
+
+    fn apply(&mut self, change: Change) {
+        match change {
+            Change::Settings(settings) => self.settings = settings,
+            Change::Camera(index) => {
+                if let Some(named) = self.scene.cameras.get(index) {
+                    self.walker.go_to(named.camera);
+                }
+            }
+            Change::Home => self.walker.go_home(),
+            Change::Speed(speed) => self.walker.set_speed(speed),
+            Change::Fov(fov) => self.walker.set_fov(fov),
+            Change::Sensitivity(sensitivity) => self.walker.sensitivity = sensitivity,
+            Change::InvertLook(invert) => self.walker.invert_look = invert,
+            Change::TogglePanel => self.shown.panel = !self.shown.panel,
+        }
+    }
+
+    /// Starts over on a new device, unless the old one did not even last.
+    fn replace_device(&mut self, now: Instant, reason: String) -> Result<(), AppError> {
+        if now.saturating_duration_since(self.device_made) < DEVICE_TRIAL {
+            return Err(AppError::GraphicsLost(reason));
+        }
+        self.gpu = Gpu::new(&self.window, &self.display).map_err(AppError::GraphicsLost)?;
+        self.blit = Blit::new(&self.gpu.device, self.gpu.format());
+        self.layer = Layer::new(&self.gpu, &self.window);
+        self.device_made = now;
+        self.posted = None;
+        self.repaint(now);
+        Ok(())
+    }
+}
+
+/// The traced picture for a window of `size`: the same, or of the same shape where that would be too many pixels.
+fn picture_size((width, height): (u32, u32)) -> (u32, u32) {
+    let pixels = f64::from(width) * f64::from(height);
+    if pixels <= MAX_PIXELS {
+        return (width, height);
+    }
+    let scale = (MAX_PIXELS / pixels).sqrt();
+    let scaled = |side: u32| ((f64::from(side) * scale) as u32).max(1);
+    (scaled(width), scaled(height))
+}
+
+fn notches(delta: MouseScrollDelta) -> f64 {
+    match delta {
+        MouseScrollDelta::LineDelta(_, lines) => f64::from(lines),
+        MouseScrollDelta::PixelDelta(pixels) => pixels.y / PIXELS_PER_NOTCH,
+    }
+}
+
+/// The window as capture sees it.
+struct WindowHost<'a>(&'a Window);
+
+impl PointerHost for WindowHost<'_> {
+    fn lock(&self) -> bool {
+        self.0.set_cursor_grab(CursorGrabMode::Locked).is_ok()
+    }
+
+    fn unlock(&self) {
+        // Refused, there is nothing more to do: a lost focus frees the pointer anyway.
+        let _ = self.0.set_cursor_grab(CursorGrabMode::None);
+    }
+
+    fn warp(&self, position: DVec2) -> bool {
+        self.0.set_cursor_position(PhysicalPosition::new(position.x, position.y)).is_ok()
+    }
+
+    fn show(&self, visible: bool) {
+        self.0.set_cursor_visible(visible);
+    }
+
+    fn size(&self) -> DVec2 {
+        let size = self.0.inner_size();
+        DVec2::new(f64::from(size.width), f64::from(size.height))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn huge_windows_get_a_smaller_picture_of_the_same_shape() {
+        assert_eq!(picture_size((1280, 720)), (1280, 720));
+        assert_eq!(picture_size((0, 720)), (0, 720));
+        let (width, height) = picture_size((16384, 8192));
+        assert!(f64::from(width) * f64::from(height) <= MAX_PIXELS);
+        assert!((f64::from(width) / f64::from(height) - 2.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn smooth_scrolling_adds_up_to_notches() {
+        assert_eq!(notches(MouseScrollDelta::LineDelta(0.0, -2.0)), -2.0);
+        assert_eq!(notches(MouseScrollDelta::PixelDelta(PhysicalPosition::new(0.0, 20.0))), 0.5);
+    }
+}

@@ -1,0 +1,188 @@
+//! The overlay, driven like a user would: no window, no GPU.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use raywalk::app::history::History;
+use raywalk::app::overlay::{self, Change, Shown, View, theme};
+use raywalk::geometry::Geometry;
+use raywalk::render::FrameStats;
+use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene};
+use raywalk::settings::{Kind, PRESETS, ROWS, Settings, row};
+use std::time::{Duration, Instant};
+
+fn scene() -> Scene {
+    let named = |name: &str| NamedCamera { name: name.to_owned(), camera: Camera::default() };
+    Scene {
+        name: "room".to_owned(),
+        generation: 1,
+        geometry: Geometry::build(Vec::new()),
+        objects: Vec::new(),
+        materials: vec![Material::default_phong()],
+        textures: Vec::new(),
+        lights: Vec::new(),
+        headlight: true,
+        cameras: vec![named("default"), named("door")],
+        render: RenderDefaults::default(),
+        warnings: Vec::new(),
+    }
+}
+
+/// An overlay with what it shows, and everything that was asked for.
+struct Panel {
+    scene: Scene,
+    settings: Settings,
+    history: History,
+    shown: Shown,
+    changes: Vec<Change>,
+}
+
+impl Panel {
+    fn new() -> Self {
+        let settings = Settings::balanced();
+        let shown = Shown::default();
+        Self { scene: scene(), settings, history: History::default(), shown, changes: Vec::new() }
+    }
+
+    fn show(&mut self, ui: &mut egui::Ui) {
+        let view = View {
+            scene: &self.scene,
+            settings: &self.settings,
+            stats: &FrameStats::default(),
+            history: &self.history,
+            resting: false,
+            size: (1280, 720),
+            speed: 1.5,
+            fov: 60.0,
+            sensitivity: 0.12,
+            invert_look: false,
+        };
+        let changes = overlay::show(ui, &view, self.shown);
+        for change in &changes {
+            if let Change::Settings(settings) = change {
+                self.settings = settings.clone();
+            }
+        }
+        self.changes.extend(changes);
+    }
+
+    fn harness(self) -> Harness<'static, Self> {
+        Harness::builder()
+            .with_size(egui::vec2(800.0, 1400.0))
+            .with_context_setup(theme::apply)
+            .build_ui_state(|ui, panel: &mut Self| panel.show(ui), self)
+    }
+}
+
+#[test]
+fn showing_changes_nothing() {
+    for preset in PRESETS {
+        let mut panel = Panel::new();
+        panel.settings = (preset.settings)();
+        let mut harness = panel.harness();
+        harness.run();
+        assert_eq!(harness.state().changes, [], "{}", preset.name);
+    }
+}
+
+#[test]
+fn every_setting_has_a_control_that_shows_its_promise() {
+    let harness = Panel::new().harness();
+    for row in ROWS {
+        // What the name labels, and not the name itself; getting it panics when there is none.
+        harness.get_all_by_label(row.name).next();
+        assert!(row.promise(&(row.get)(&harness.state().settings)).is_some(), "{}", row.name);
+    }
+    let promises = ["same pixels", "approximate", "different picture"];
+    let shown: usize = promises.iter().map(|promise| harness.query_all_by_label(promise).count()).sum();
+    assert_eq!(shown, ROWS.len());
+}
+
+#[test]
+fn every_switch_switches_and_every_choice_can_be_chosen() {
+    for row in ROWS {
+        let Kind::Choice(choices) = &row.kind else { continue };
+        for choice in *choices {
+            let panel = Panel::new();
+            let mut expected = panel.settings.clone();
+            (row.set)(&mut expected, choice.value).expect("a listed value is allowed");
+            if expected == panel.settings {
+                continue;
+            }
+            let mut harness = panel.harness();
+            harness.get_by_label(row.name).click();
+            harness.run();
+            if harness.state().changes.is_empty() {
+                harness.get_by_role_and_label(egui::accesskit::Role::Button, choice.value).click();
+                harness.run();
+            }
+            assert_eq!(harness.state().changes, [Change::Settings(expected)], "{} {}", row.name, choice.value);
+        }
+    }
+}
+
+#[test]
+fn every_number_can_be_set() {
+    for row in ROWS {
+        let Kind::Number { max, .. } = row.kind else { continue };
+        let mut harness = Panel::new().harness();
+        let control = harness.get_all_by_label(row.name).next_back().expect("a control");
+        control.set_value_accesskit(max);
+        harness.run();
+        let text = (row.get)(&harness.state().settings);
+        assert_eq!(text.parse::<f64>().ok(), Some(max), "{}", row.name);
+    }
+}
+
+#[test]
+fn a_preset_sets_everything() {
+    for preset in PRESETS {
+        let mut harness = Panel::new().harness();
+        harness.get_by_label(preset.name).click();
+        harness.run();
+        assert_eq!(harness.state().settings, (preset.settings)(), "{}", preset.name);
+    }
+}
+
+#[test]
+fn cameras_speed_and_view_answer() {
+    let mut harness = Panel::new().harness();
+    harness.get_by_label("door").click();
+    harness.run();
+    harness.get_by_label("start").click();
+    harness.run();
+    harness.get_by_label("invert look").click();
+    harness.run();
+    harness.get_by_label("Hide panel").click();
+    harness.run();
+    let expected = [Change::Camera(1), Change::Home, Change::InvertLook(true), Change::TogglePanel];
+    assert_eq!(harness.state().changes, expected);
+}
+
+#[test]
+fn the_status_line_says_rate_time_and_size() {
+    let mut panel = Panel::new();
+    let start = Instant::now();
+    for i in 0..100 {
+        panel.history.record(start + Duration::from_millis(16) * i, 14.2);
+    }
+    panel.shown.panel = false;
+    let mut harness = panel.harness();
+    harness.get_by_label("62 fps | 14.2 ms | 1280x720");
+    assert!(harness.query_by_label(ROWS[0].name).is_none(), "the panel is closed");
+    harness.state_mut().shown.overlay = false;
+    harness.run();
+    assert!(harness.query_by_label_contains("1280x720").is_none(), "everything is hidden");
+}
+
+#[test]
+fn an_approximate_value_is_told_from_an_exact_one() {
+    let visibility = row("visibility").expect("it is listed");
+    let count = |harness: &Harness<'_, Panel>| harness.query_all_by_label("approximate").count();
+    let mut panel = Panel::new();
+    panel.settings = Settings::exact();
+    let mut harness = panel.harness();
+    let before = count(&harness);
+    (visibility.set)(&mut harness.state_mut().settings, "subsample").expect("a listed value is allowed");
+    harness.run();
+    assert_eq!(count(&harness), before + 1);
+}
