@@ -61,4 +61,3 @@ impl<const N: usize> Block<N> {
         K::bounds(&self.get(place))
     }
 }
-

@@ -1,8 +1,8 @@
 //! What a traversal does with the hits it finds.
 
 use super::{NO_PRIMITIVE, PrimitiveIndex};
-use fearless_simd::prelude::*;
 use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 
 /// Lane mask of native width.
 pub type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;

@@ -81,9 +81,8 @@ fn is_heavy(weight: Vec3, min_weight: f32) -> bool {
 /// Index of refraction on the side where the ray comes from, divided by that on the other side.
 fn relative_index(frame: &Frame<'_>, incident: &Incident, material: &Material, body: bool, media: &Media) -> f32 {
     let around = media.around(incident.media, incident.object);
-    let outside = around.map_or(1.0, |object| {
-        frame.scene.materials[frame.scene.objects[object as usize].material as usize].ior
-    });
+    let outside =
+        around.map_or(1.0, |object| frame.scene.materials[frame.scene.objects[object as usize].material as usize].ior);
     if incident.entering || !body { outside / material.ior } else { material.ior / outside }
 }
 

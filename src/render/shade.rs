@@ -296,13 +296,7 @@ fn metallic_roughness<S: Simd>(
 
 /// glTF's KHR_lights_punctual: the square of a linear ramp between the cosines of the two half-angles.
 #[inline(always)]
-fn spot_share<S: Simd>(
-    simd: S,
-    to_light: V3<S::f32s>,
-    direction: Vec3,
-    cos_inner: f32,
-    cos_outer: f32,
-) -> S::f32s {
+fn spot_share<S: Simd>(simd: S, to_light: V3<S::f32s>, direction: Vec3, cos_inner: f32, cos_outer: f32) -> S::f32s {
     let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
     let cosine = V3::splat(simd, -direction).dot(to_light);
     let ramp = (cosine - cos_outer) / (cos_inner - cos_outer).max(1e-4);

@@ -39,14 +39,7 @@ fn eye_search<'a>(frame: &Frame<'a>) -> Search<'a> {
     Search { sphere_terms, ..Search::new(&frame.scene.geometry, frame.plan.tree) }
 }
 
-fn trace_queue<S: Simd>(
-    simd: S,
-    search: &Search<'_>,
-    t_min: f32,
-    t_max: f32,
-    rays: &mut RayQueue,
-    stack: &mut Stack,
-) {
+fn trace_queue<S: Simd>(simd: S, search: &Search<'_>, t_min: f32, t_max: f32, rays: &mut RayQueue, stack: &mut Stack) {
     simd.vectorize(
         #[inline(always)]
         || {

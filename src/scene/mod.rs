@@ -72,6 +72,8 @@ pub struct Scene {
     pub generation: u64,
     /// Shapes and the tree over them.
     pub geometry: Geometry,
+    /// Milliseconds it took to build `geometry`.
+    pub build_ms: f64,
     /// Leaf objects, depth first in file order; a hit's object index points here.
     pub objects: Vec<Object>,
     /// Materials; objects point here. Never empty.
