@@ -1,5 +1,4 @@
 //! raywalk: a first-person walkthrough viewer that ray-traces every frame on CPU threads.
-#![warn(missing_docs)]
 
 pub mod settings;
 
