@@ -1,4 +1,28 @@
 //! raywalk: a first-person walkthrough viewer that ray-traces every frame on CPU threads.
+//!
+//! The rooms, from the ground up; each imports only what stands above it in this list:
+//!
+//! | room | what it knows |
+//! |---|---|
+//! | [`settings`] | every switch and knob, as plain data |
+//! | [`math`] | SIMD levels, lanes, vectors of lanes, functions that give the same bits everywhere |
+//! | [`geometry`] | what a ray can meet and how to find it; no colour |
+//! | [`scene`] | what the place looks like, and how it is read from disk |
+//! | [`render`] | one frame from scene, camera and settings; no window, no file |
+//! | [`picture`] | pictures on disk |
+//! | [`measure`] | how fast and how true: runs, records, metrics |
+//! | [`app`] | the window: input in, picture and panel out |
+//!
+//! Everything that draws goes through one waist, [`render::render_frame`]:
+//!
+//! ```text
+//!  window events ─► walker ─► Camera ─┐
+//!  command line ─► Settings ──────────┤
+//!  scene file ─► SceneDesc ─► Scene ──┴─► render_frame ─► Film ─► texture, PNG, EXR
+//!                                          │ plan: the cheapest pipeline that draws this scene
+//!                                          │ tiles: visibility ─► shade ─► shadows ─► secondary rays, level by level
+//!                                          └─► FrameStats ─► overlay, --stats
+//! ```
 #![warn(missing_docs)]
 
 pub mod settings;
@@ -6,7 +30,13 @@ pub mod settings;
 pub mod math;
 
 pub mod geometry;
-pub mod render;
+
 pub mod scene;
+
+pub mod render;
+
+pub mod picture;
+
+pub mod measure;
 
 pub mod app;

@@ -1,3 +1,35 @@
-//! The front door.
+//! The front door: read the command line, run one command, print a failure once, return the exit code.
+//!
+//! | code | meaning |
+//! |---|---|
+//! | 0 | done |
+//! | 1 | the input or the run failed |
+//! | 2 | wrong usage |
+//! | 130 | stopped by Ctrl-C |
 
-fn main() {}
+mod cli;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let asked = match cli::command().try_get_matches() {
+        Ok(asked) => asked,
+        Err(answer) => return print_answer(&answer),
+    };
+    match cli::run(&asked) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            // Whoever closed stderr does not want to know.
+            let _ = writeln!(std::io::stderr(), "error: {failure}");
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+/// Prints help or the version on stdout, or on stderr what is wrong with the command line.
+fn print_answer(answer: &clap::Error) -> ExitCode {
+    // A pager that was closed early is no failure.
+    let _ = answer.print();
+    ExitCode::from(u8::try_from(answer.exit_code()).unwrap_or(cli::Failure::WRONG_USAGE))
+}

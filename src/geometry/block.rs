@@ -3,7 +3,8 @@
 use super::Aabb;
 use super::primitive::Kernel;
 use crate::math::Lanes;
-use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8};
 
 /// Primitives in a block.
 pub const BLOCK: usize = 8;
@@ -49,6 +50,12 @@ impl<const N: usize> Block<N> {
     #[inline(always)]
     pub fn splat<S: Simd, F: Lanes<S>>(&self, simd: S, place: usize) -> [F; N] {
         std::array::from_fn(|f| F::splat(simd, self.fields[f][place]))
+    }
+
+    /// Each field of all primitives.
+    #[inline(always)]
+    pub fn load<S: Simd>(&self, simd: S) -> [f32x8<S>; N] {
+        std::array::from_fn(|f| f32x8::from_slice(simd, &self.fields[f]))
     }
 
     /// Bounds of all primitives in it.

@@ -9,6 +9,7 @@ pub mod bvh;
 pub mod packet;
 pub mod primitive;
 pub mod shape;
+mod single;
 pub mod traverse;
 pub mod visitor;
 

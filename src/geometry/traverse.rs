@@ -34,14 +34,14 @@ pub struct Search<'a> {
 
 /// A subtree still to be visited.
 #[derive(Clone, Copy, Debug)]
-struct Pending {
-    child: Child,
+pub(super) struct Pending {
+    pub child: Child,
     /// No ray of the packet enters its box before this.
-    near: f32,
+    pub near: f32,
 }
 
 /// Subtrees that can wait at once: seven a level of an eight-wide tree, and trees are far less deep than this.
-const STACK: usize = 512;
+pub(super) const STACK: usize = 512;
 
 /// Room for the subtrees that wait during a traversal. Kept between packets: clearing it would cost more than most
 /// traversals do.
@@ -66,7 +66,11 @@ impl<'a> Search<'a> {
         match &self.geometry.bvh {
             Some(bvh) if self.use_bvh => {
                 self.visit_all(simd, &[PrimitiveKind::Plane], packet, visitor);
-                self.visit_tree(simd, bvh, packet, &mut stack.0, visitor);
+                if packet.is_coherent() {
+                    self.visit_tree(simd, bvh, packet, &mut stack.0, visitor);
+                } else {
+                    self.visit_tree_by_rays(simd, bvh, packet, &mut stack.0, visitor);
+                }
             }
             _ => self.visit_all(simd, PrimitiveKind::ALL, packet, visitor),
         }

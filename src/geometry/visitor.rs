@@ -1,8 +1,8 @@
 //! What a traversal does with the hits it finds.
 
-use super::{NO_PRIMITIVE, PrimitiveIndex};
-use fearless_simd::Simd;
+use super::{BLOCK, NO_PRIMITIVE, PrimitiveIndex};
 use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8};
 
 /// Lane mask of native width.
 pub type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
@@ -26,13 +26,22 @@ pub trait Visitor<S: Simd> {
 
     /// Whether no lane has any interest left.
     fn is_finished(&self) -> bool;
+
+    /// [`limit`](Self::limit) of one lane.
+    fn lane_limit(&self, lane: usize) -> f32;
+
+    /// [`t_min`](Self::t_min) of one lane towards each of eight primitives.
+    fn lane_t_min(&self, simd: S, lane: usize, primitives: &[PrimitiveIndex; BLOCK]) -> f32x8<S>;
+
+    /// [`hit`](Self::hit) of one lane.
+    fn lane_hit(&mut self, lane: usize, t: f32, primitive: PrimitiveIndex);
 }
 
 /// Finds the minimum of (t, primitive) a lane.
 #[derive(Clone, Copy, Debug)]
 pub struct ClosestHit<S: Simd> {
     t_min: S::f32s,
-    /// Distance of the best hit so far, or the limit that it was made with.
+    /// Distance of the best hit so far, or the limit that it was made with where nothing was hit.
     pub t: S::f32s,
     /// The primitive that was hit, or [`NO_PRIMITIVE`].
     pub primitive: S::u32s,
@@ -68,6 +77,24 @@ impl<S: Simd> Visitor<S> for ClosestHit<S> {
     #[inline(always)]
     fn is_finished(&self) -> bool {
         false
+    }
+
+    #[inline(always)]
+    fn lane_limit(&self, lane: usize) -> f32 {
+        self.t[lane]
+    }
+
+    #[inline(always)]
+    fn lane_t_min(&self, simd: S, lane: usize, _primitives: &[PrimitiveIndex; BLOCK]) -> f32x8<S> {
+        f32x8::splat(simd, self.t_min[lane])
+    }
+
+    #[inline(always)]
+    fn lane_hit(&mut self, lane: usize, t: f32, primitive: PrimitiveIndex) {
+        if t < self.t[lane] || (t == self.t[lane] && primitive < self.primitive[lane]) {
+            self.t[lane] = t;
+            self.primitive[lane] = primitive;
+        }
     }
 }
 
@@ -144,6 +171,23 @@ impl<S: Simd> Visitor<S> for AnyHit<'_, S> {
     fn is_finished(&self) -> bool {
         self.limit.simd_lt(S::f32s::splat(self.limit.token(), 0.0)).all_true()
     }
+
+    #[inline(always)]
+    fn lane_limit(&self, lane: usize) -> f32 {
+        self.limit[lane]
+    }
+
+    #[inline(always)]
+    fn lane_t_min(&self, simd: S, _lane: usize, _primitives: &[PrimitiveIndex; BLOCK]) -> f32x8<S> {
+        f32x8::splat(simd, 0.0)
+    }
+
+    #[inline(always)]
+    fn lane_hit(&mut self, lane: usize, _t: f32, primitive: PrimitiveIndex) {
+        self.blocked.set(lane, true);
+        self.limit[lane] = -1.0;
+        self.blocker = primitive;
+    }
 }
 
 /// Finds the next crossing of a transparent primitive in the order of (t, primitive).
@@ -192,5 +236,24 @@ impl<S: Simd> Visitor<S> for NextCrossing<'_, S> {
     #[inline(always)]
     fn is_finished(&self) -> bool {
         false
+    }
+
+    #[inline(always)]
+    fn lane_limit(&self, lane: usize) -> f32 {
+        self.closest.t[lane]
+    }
+
+    #[inline(always)]
+    fn lane_t_min(&self, simd: S, lane: usize, primitives: &[PrimitiveIndex; BLOCK]) -> f32x8<S> {
+        let (last_t, last_primitive) = (self.last_t[lane], self.last_primitive[lane]);
+        f32x8::from_fn(simd, |place| {
+            let later = last_t > 0.0 && last_primitive < primitives[place];
+            if later { f32::from_bits(last_t.to_bits() - 1) } else { last_t }
+        })
+    }
+
+    #[inline(always)]
+    fn lane_hit(&mut self, lane: usize, t: f32, primitive: PrimitiveIndex) {
+        self.closest.lane_hit(lane, t, primitive);
     }
 }

@@ -116,9 +116,15 @@ impl RayQueue {
         for at in self.len..self.len + MOST_LANES {
             self.origin.set(at, origin);
             self.direction.set(at, direction);
-            self.primitive[at] = NO_PRIMITIVE;
-            self.t[at] = 0.0;
         }
+        self.clear_padding();
+    }
+
+    /// Marks the rays beyond the end as hitting nothing: they are nobody's.
+    pub fn clear_padding(&mut self) {
+        let beyond = self.len..self.len + MOST_LANES;
+        self.primitive[beyond.clone()].fill(NO_PRIMITIVE);
+        self.t[beyond].fill(0.0);
     }
 }
 

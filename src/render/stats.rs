@@ -77,7 +77,7 @@ pub struct FrameStats {
 
 impl FrameStats {
     /// Adds another's counts and stage times; `completed` and `frame_ms` stay.
-    pub(super) fn add(&mut self, other: &Self) {
+    pub fn add(&mut self, other: &Self) {
         let (rays, pixels, stages, cache) =
             (&mut self.rays, &mut self.pixels, &mut self.stages_ms, &mut self.shadow_cache);
         rays.primary += other.rays.primary;

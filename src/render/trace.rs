@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use super::queue::RayQueue;
 use super::tile::Worker;
-use crate::geometry::{ClosestHit, Packet, Search, SphereTerms, Stack};
+use crate::geometry::{ClosestHit, NO_PRIMITIVE, Packet, Search, SphereTerms, Stack};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -67,8 +67,11 @@ fn for_each_packet<S: Simd>(
         let packet = Packet::new(simd, search.geometry, rays.origin.load(simd, at), rays.direction.load(simd, at));
         let mut visitor = ClosestHit::new(simd, t_min, t_max);
         find(&packet, &mut visitor);
-        // Lanes beyond the end repeat the last ray; the queue has room for them.
-        visitor.t.store_slice(&mut rays.t[at..at + S::f32s::LEN]);
+        let missed = visitor.primitive.simd_eq(S::u32s::splat(simd, NO_PRIMITIVE));
+        let t = missed.select(S::f32s::splat(simd, f32::INFINITY), visitor.t);
+        t.store_slice(&mut rays.t[at..at + S::f32s::LEN]);
         visitor.primitive.store_slice(&mut rays.primitive[at..at + S::f32s::LEN]);
     }
+    // The last packet's spare lanes repeated the last ray, and found what it found.
+    rays.clear_padding();
 }

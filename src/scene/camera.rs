@@ -68,7 +68,9 @@ impl Camera {
         } else {
             (DVec3::new(-sin_yaw, 0.0, -cos_yaw) * -sin_pitch.signum()).as_vec3()
         };
-        Self { eye, look_at: (eye.as_dvec3() + direction).as_vec3(), up, fov, ..Self::default() }
+        // Far from the origin a point one metre away would round to a coarse direction.
+        let distance = f64::from(eye.abs().max_element().max(1.0));
+        Self { eye, look_at: (eye.as_dvec3() + direction * distance).as_vec3(), up, fov, ..Self::default() }
     }
 
     /// Whether the camera can make rays: all finite, the view neither zero nor parallel to `up`, `fov` in (0, 180).
@@ -118,6 +120,13 @@ mod tests {
         for pitch in [-90.0, 90.0] {
             assert!(Camera::from_yaw_pitch(Vec3::ONE, 30.0, pitch, 60.0).is_valid());
         }
+    }
+
+    #[test]
+    fn yaw_keeps_its_direction_far_from_the_origin() {
+        let camera = Camera::from_yaw_pitch(Vec3::splat(1e7), 30.0, 10.0, 60.0);
+        let near = Camera::from_yaw_pitch(Vec3::ZERO, 30.0, 10.0, 60.0);
+        assert!(camera.frame(4, 4).forward.abs_diff_eq(near.frame(4, 4).forward, 1e-6));
     }
 
     #[test]

@@ -60,16 +60,25 @@ pub struct Material {
 }
 
 impl Material {
+    /// Weight of the scene's ambient light where a material gives none.
+    pub const AMBIENT: Vec3 = Vec3::splat(0.05);
+    /// Weight of each light's diffuse part where a material gives none.
+    pub const DIFFUSE: Vec3 = Vec3::ONE;
+    /// Colour of the highlight where a material gives none.
+    pub const SPECULAR: Vec3 = Vec3::ONE;
+    /// Blinn-Phong exponent where a material gives none.
+    pub const SHININESS: f32 = 50.0;
+
     /// The thesis's material with reflectivity 0: white, ambient 0.05, diffuse 1, specular 1, shininess 50.
     pub fn default_phong() -> Self {
         Self {
             name: String::new(),
             color: ColorSource::Constant(Vec3::ONE),
             model: Model::Phong {
-                ambient: Vec3::splat(0.05),
-                diffuse: Vec3::ONE,
-                specular: Vec3::ONE,
-                shininess: 50.0,
+                ambient: Self::AMBIENT,
+                diffuse: Self::DIFFUSE,
+                specular: Self::SPECULAR,
+                shininess: Self::SHININESS,
             },
             emission: ColorSource::Constant(Vec3::ZERO),
             reflectivity: Vec3::ZERO,

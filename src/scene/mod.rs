@@ -4,21 +4,33 @@
 //! (`desc`), `build` flattens it into geometry, objects, materials and lights.
 //! Architecture invariant: a scene never changes after it was built; a reload makes a new one.
 
+pub mod black_body;
+pub mod build;
+mod builtin;
 pub mod camera;
+pub mod desc;
 pub mod error;
+pub mod files;
+pub mod format;
 pub mod light;
+pub mod limits;
 pub mod material;
 pub mod object;
+pub mod path;
 pub mod texture;
 
+pub use builtin::builtin;
 pub use camera::Camera;
 pub use error::{SceneError, Warning};
+pub use format::{FORMATS, LoadOptions, load, load_embedded};
 pub use light::Light;
+pub use limits::Limits;
 pub use material::Material;
 pub use object::Object;
+pub use path::CameraPath;
 pub use texture::Texture;
 
-use crate::geometry::Geometry;
+use crate::geometry::{Aabb, Geometry};
 use glam::Vec3;
 
 /// A camera that the scene file names.
@@ -58,6 +70,8 @@ pub struct Scene {
     pub name: String,
     /// Unique per built scene: caches keyed by it never outlive it.
     pub generation: u64,
+    /// Milliseconds that sorting its shapes and building the tree took.
+    pub build_ms: f64,
     /// Shapes and the tree over them.
     pub geometry: Geometry,
     /// Leaf objects, depth first in file order; a hit's object index points here.
@@ -76,4 +90,11 @@ pub struct Scene {
     pub render: RenderDefaults,
     /// What was odd about the file, already worded for people.
     pub warnings: Vec<Warning>,
+}
+
+impl Scene {
+    /// The bounds of all finite objects; empty when there is none. Planes are not finite.
+    pub fn bounds(&self) -> Aabb {
+        build::finite_bounds(&self.objects)
+    }
 }

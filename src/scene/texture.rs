@@ -1,6 +1,7 @@
 //! Textures: images and checkers, looked up by surface coordinates.
 
 use glam::{Vec2, Vec3};
+use std::sync::Arc;
 
 /// A picture wrapped around by repetition, one texel per byte triple.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,8 +10,8 @@ pub struct ImageTexture {
     pub width: u32,
     /// Height in texels, at least 1.
     pub height: u32,
-    /// sRGB-encoded texels, row by row from the top.
-    pub texels: Vec<[u8; 3]>,
+    /// sRGB-encoded texels, row by row from the top; textures of one file share them.
+    pub texels: Arc<[[u8; 3]]>,
     /// Size of one repetition in units of u and v.
     pub size: f32,
 }

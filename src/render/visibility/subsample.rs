@@ -253,6 +253,6 @@ fn fill_hits<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, cells: &mut Cells
     worker.found = found;
     // Corners beyond the tile's border belong to the next tile.
     worker.rays.retain_from(0, |sample, _| is_own(pixel_at(sample), pass));
-    worker.rays.pad();
+    worker.rays.clear_padding();
     shade_queue(simd, frame, worker);
 }

@@ -1,0 +1,206 @@
+//! What can be typed. Every setting is a flag, made from the list of settings; formats, presets, limits and metrics
+//! show in the help from their lists as well.
+
+use super::values;
+use clap::{Arg, ArgAction, Command, crate_version, value_parser};
+use raywalk::math::simd;
+use raywalk::measure::metric::METRICS;
+use raywalk::picture::FORMATS;
+use raywalk::scene::Limits;
+use raywalk::settings::{Kind, PRESETS, ROWS, Row, Settings};
+use std::path::PathBuf;
+
+/// The whole command line.
+pub fn command() -> Command {
+    let about = "A first-person walkthrough viewer that ray-traces every frame on CPU threads";
+    let view = Command::new("raywalk")
+        .version(crate_version!())
+        .about(about)
+        .after_help(
+            "Without a command: opens a window on SCENE, or on the built-in scene. With no display, renders one frame \
+             to raywalk.png in the current folder.\n\nExit codes: 0 done, 1 the input or the run failed, 2 wrong \
+             usage, 130 after Ctrl-C.",
+        )
+        .args_conflicts_with_subcommands(true)
+        .subcommand_precedence_over_arg(true)
+        .max_term_width(120);
+    with_shared(view).subcommands([render(), info(), compare()])
+}
+
+fn render() -> Command {
+    let formats: Vec<String> =
+        FORMATS.iter().map(|format| format!(".{}: {}", format.extensions.join(" ."), format.help)).collect();
+    let command = Command::new("render")
+        .about("Renders one or many frames, without window or GPU")
+        .after_help("Starts from the preset exact. Without -o nothing is written: the run is timed (see --stats).")
+        .arg(
+            Arg::new("output")
+                .short('o')
+                .long("output")
+                .value_name("OUT")
+                .value_parser(value_parser!(PathBuf))
+                .help("Picture to write, its format by the extension; %04d stands for the frame's number")
+                .long_help(format!(
+                    "Picture to write, its format by the extension; %04d stands for the frame's number\n{}",
+                    formats.join("\n")
+                )),
+        )
+        .arg(switch("binary", "Write .ppm as raw bytes (P6), not text (P3)"));
+    with_shared(command)
+}
+
+fn info() -> Command {
+    Command::new("info")
+        .about("Says what a scene holds and what it needs to be drawn")
+        .arg(scene())
+        .arg(switch("json", "One JSON object instead of text"))
+        .args(reading())
+}
+
+fn compare() -> Command {
+    let metrics: Vec<String> = METRICS.iter().map(|metric| format!("{}: {}", metric.name, metric.help)).collect();
+    let picture = |name: &'static str| Arg::new(name).required(true).value_parser(value_parser!(PathBuf));
+    Command::new("compare")
+        .about("Measures how two pictures differ")
+        .after_help(format!(
+            "Pictures: PNG of 8 or 16 bits (JPEG and BMP too; alpha is left out), or OpenEXR. Values are fractions of \
+             a channel's range.\n\n{}",
+            metrics.join("\n")
+        ))
+        .arg(picture("A").help("A picture, such as the reference"))
+        .arg(picture("B").help("Another of the same size"))
+        .arg(switch("json", "One JSON object instead of text; a metric without a value is null"))
+        .arg(Arg::new("diff").long("diff").value_name("OUT").value_parser(value_parser!(PathBuf)).help(
+            "Write the difference picture: each pixel's greatest channel difference, dark violet for none to \
+                 yellow for the greatest of the pair",
+        ))
+        .arg(switch("hdr", "Compare linear light, unclamped, instead of what a display shows"))
+}
+
+/// The options of every command that renders.
+fn with_shared(command: Command) -> Command {
+    let option = |name: &'static str, value: &'static str| Arg::new(name).long(name).value_name(value);
+    let signed = |name, value| option(name, value).allow_hyphen_values(true);
+    let presets: Vec<String> = PRESETS.iter().map(|preset| format!("{}: {}", preset.name, preset.help)).collect();
+    command
+        .arg(scene())
+        .next_help_heading("View")
+        .arg(
+            option("size", "WxH").value_parser(values::size).help("Picture size [default: the scene's, else 1280x720]"),
+        )
+        .arg(option("camera", "NAME|INDEX").help("A camera of the scene [default: the first]"))
+        .arg(signed("eye", "x,y,z").value_parser(values::vector).help("Position of the eye"))
+        .arg(signed("look-at", "x,y,z").value_parser(values::vector).help("A point to look at"))
+        .arg(signed("up", "x,y,z").value_parser(values::vector).help("Which way is up"))
+        .arg(signed("fov", "DEG").value_parser(values::field_of_view).help("Vertical field of view in degrees"))
+        .next_help_heading("Run")
+        .arg(
+            option("path", "FILE.json")
+                .value_parser(value_parser!(PathBuf))
+                .conflicts_with_all(["eye", "look-at"])
+                .help("Move the camera along a path"),
+        )
+        .arg(option("frames", "A..B").value_parser(values::frames).help(
+            "Frames A to B-1 of the path; without one, the same view B-A times, the last one written [default: all \
+             of the path, else one]",
+        ))
+        .arg(
+            option("aov", "LIST")
+                .value_delimiter(',')
+                .value_parser(["depth", "normal", "object", "primitive"])
+                .action(ArgAction::Append)
+                .help("Planes to write beside the colour, separated by commas; needs .exr"),
+        )
+        .arg(option("stats", "FILE|-").help("Write figures of the run as JSON, after two untimed warm-up frames"))
+        .args(reading())
+        .next_help_heading("Settings (a flag beats the preset, whatever their order)")
+        .arg(
+            option("preset", "NAME")
+                .value_parser(PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>())
+                .help("Where the settings start from")
+                .long_help(format!("Where the settings start from\n{}", presets.join("\n"))),
+        )
+        .args(ROWS.iter().map(setting))
+}
+
+/// Options of every command that reads a scene.
+fn reading() -> [Arg; 3] {
+    let limits: Vec<String> = Limits::help().collect();
+    [
+        Arg::new("limit")
+            .long("limit")
+            .value_name("NAME=VALUE")
+            .value_parser(values::limit)
+            .action(ArgAction::Append)
+            .help("Change a limit on what a scene may ask of the machine")
+            .long_help(format!("Change a limit on what a scene may ask of the machine\n{}", limits.join("\n"))),
+        switch("strict", "Treat the scene's warnings as errors"),
+        switch("quiet", "No progress bar and no warnings"),
+    ]
+}
+
+fn scene() -> Arg {
+    Arg::new("scene")
+        .value_name("SCENE")
+        .value_parser(value_parser!(PathBuf))
+        .help("Scene file [default: the built-in scene]")
+}
+
+fn switch(name: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).action(ArgAction::SetTrue).help(help)
+}
+
+/// The flag of a setting.
+fn setting(row: &'static Row) -> Arg {
+    let arg = Arg::new(row.name).long(row.name).value_parser(move |text: &str| checked(row, text));
+    match &row.kind {
+        Kind::Choice(choices) => {
+            let values: Vec<&str> = choices.iter().map(|choice| choice.value).collect();
+            let promises: Vec<String> =
+                choices.iter().map(|choice| format!("{}: {}", choice.value, choice.promise)).collect();
+            arg.value_name("VALUE").help(format!("{} [{}]", row.help, values.join("|"))).long_help(format!(
+                "{}\n{}",
+                row.help,
+                promises.join("\n")
+            ))
+        }
+        Kind::Number { min, max, promise, .. } => arg
+            .value_name("N")
+            .help(row.help)
+            .allow_hyphen_values(*min < 0.0)
+            .long_help(format!("{}\n{min} to {max}: {promise}", row.help)),
+    }
+}
+
+/// The text of a setting, if this machine can do it.
+fn checked(row: &Row, text: &str) -> Result<String, String> {
+    let mut settings = Settings::default();
+    (row.set)(&mut settings, text)?;
+    if !simd::is_available(settings.simd) {
+        return Err("this machine lacks it; auto takes the best it has".to_owned());
+    }
+    Ok(text.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        command().debug_assert();
+    }
+
+    #[test]
+    fn every_setting_is_a_flag_with_its_values_and_promises_in_the_help() {
+        let help = render().render_long_help().to_string();
+        for row in ROWS {
+            assert!(help.contains(&format!("--{}", row.name)), "{}", row.name);
+            if let Kind::Choice(choices) = &row.kind {
+                for choice in *choices {
+                    assert!(help.contains(&format!("{}: {}", choice.value, choice.promise)), "{}", row.name);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! What ends a command early, and the exit code it means.
+
+use raywalk::app::AppError;
+use raywalk::measure::metric::SizesDiffer;
+use raywalk::picture::PictureError;
+use raywalk::scene::SceneError;
+
+/// Why a command was not done. The text is one line: what, where, what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// The command line asks for something that makes no sense.
+    #[error("{0}")]
+    Usage(String),
+    /// A scene or camera path could not be read.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A picture or record could not be written or read.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// Pictures that cannot be compared.
+    #[error("{0}; compare pictures of equal size")]
+    Sizes(#[from] SizesDiffer),
+    /// The scene asks for something that cannot be rendered.
+    #[error("{0}")]
+    Run(String),
+    /// The window had to close.
+    #[error(transparent)]
+    Window(#[from] AppError),
+    /// Standard output refused.
+    #[error("cannot write to standard output: {0}")]
+    Stdout(std::io::Error),
+    /// Ctrl-C.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl Failure {
+    /// Exit code of wrong usage.
+    pub const WRONG_USAGE: u8 = 2;
+    /// Exit code after Ctrl-C: 128 and the signal's number, as shells have it.
+    pub const INTERRUPTED: u8 = 130;
+
+    /// The exit code.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Usage(_) | Self::Picture(PictureError::UnknownExtension { .. }) => Self::WRONG_USAGE,
+            Self::Interrupted => Self::INTERRUPTED,
+            _ => 1,
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! Which frames a run has, and where the camera is in each.
+
+use super::Failure;
+use super::options::Options;
+use raywalk::scene::{Camera, CameraPath, Warning};
+use std::ops::Range;
+
+/// The frames of a run.
+#[derive(Clone, Debug)]
+pub struct Frames {
+    /// Their numbers.
+    pub range: Range<u64>,
+    /// What the camera moves along.
+    path: Option<CameraPath>,
+    /// Something odd about the range.
+    pub warning: Option<Warning>,
+}
+
+impl Frames {
+    /// The frames that `options` ask for: those named, else all of the path, else one.
+    pub fn of(options: &Options) -> Result<Self, Failure> {
+        let path = options.path.as_deref().map(CameraPath::load).transpose()?;
+        let all = path.as_ref().map_or(1, CameraPath::frame_count);
+        let range = options.frames.clone().unwrap_or(0..all);
+        let warning = path.as_ref().zip(options.path.as_deref()).and_then(|(p, file)| p.warning(file, range.end));
+        Ok(Self { range, path, warning })
+    }
+
+    /// The first of them alone.
+    pub fn first(&self) -> Self {
+        Self { range: self.range.start..self.range.start + 1, warning: None, ..self.clone() }
+    }
+
+    /// Whether each frame shows another view; else they all show the same.
+    pub fn differ(&self) -> bool {
+        self.path.is_some() && self.range.end - self.range.start > 1
+    }
+
+    /// The camera of frame `frame`, moving if there is a path, else `base`.
+    pub fn camera(&self, frame: u64, base: &Camera) -> Result<Camera, Failure> {
+        let Some(path) = &self.path else { return Ok(*base) };
+        let camera = path.camera(frame, base);
+        let message =
+            || format!("frame {frame} of the camera path looks along its own up, or nowhere; change its keys");
+        if camera.is_valid() { Ok(camera) } else { Err(Failure::Run(message())) }
+    }
+}

@@ -1,0 +1,150 @@
+//! `raywalk info`: what a scene holds, and what drawing it takes.
+
+use super::options::Reading;
+use super::stage;
+use super::{Failure, stdout};
+use clap::ArgMatches;
+use raywalk::geometry::Aabb;
+use raywalk::measure::counts::SceneCounts;
+use raywalk::render::Plan;
+use raywalk::scene::light::LightKind;
+use raywalk::scene::texture::Texture;
+use raywalk::scene::{Light, NamedCamera, Scene};
+use raywalk::settings::Settings;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Describes the scene that `asked` names.
+pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
+    let reading = Reading::of(asked)?;
+    let loaded = stage::load(&reading)?;
+    let info = Info::of(&loaded.scene);
+    stdout::print(&if asked.get_flag("json") { stdout::json(&info)? } else { info.text() })
+}
+
+/// What there is to say about a scene.
+#[derive(Debug, Serialize)]
+struct Info {
+    scene: String,
+    #[serde(flatten)]
+    counts: SceneCounts,
+    objects_by_type: BTreeMap<&'static str, usize>,
+    lights_by_type: BTreeMap<&'static str, usize>,
+    materials: usize,
+    textures: Vec<String>,
+    cameras: Vec<CameraInfo>,
+    /// Of everything finite; `null` if nothing is.
+    bounds: Option<Bounds>,
+    max_depth: u32,
+    /// What a frame runs under the default settings, one reason a line.
+    pipeline: Vec<String>,
+    warnings: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct CameraInfo {
+    name: String,
+    eye: [f32; 3],
+    look_at: [f32; 3],
+    up: [f32; 3],
+    fov: f32,
+}
+
+#[derive(Debug, Serialize)]
+struct Bounds {
+    min: [f32; 3],
+    max: [f32; 3],
+}
+
+impl Info {
+    fn of(scene: &Scene) -> Self {
+        let Aabb { min, max } = scene.bounds();
+        let headlight = scene.headlight.then_some("headlight");
+        Self {
+            scene: scene.name.clone(),
+            counts: SceneCounts::of(scene),
+            objects_by_type: tally(scene.objects.iter().map(|object| object.kind)),
+            lights_by_type: tally(scene.lights.iter().map(kind_of_light).chain(headlight)),
+            materials: scene.materials.len(),
+            textures: scene.textures.iter().map(describe_texture).collect(),
+            cameras: scene.cameras.iter().map(CameraInfo::of).collect(),
+            bounds: (min.is_finite() && max.is_finite()).then(|| Bounds { min: min.into(), max: max.into() }),
+            max_depth: scene.render.max_depth,
+            pipeline: Plan::new(scene, &Settings::default()).reasons(scene),
+            warnings: scene.warnings.iter().map(ToString::to_string).collect(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let c = &self.counts;
+        let cameras =
+            self.cameras.iter().map(|camera| format!("{} (eye {:?}, fov {})", camera.name, camera.eye, camera.fov));
+        let bounds =
+            self.bounds.as_ref().map_or("nothing finite".to_owned(), |b| format!("{:?} to {:?}", b.min, b.max));
+        let mut lines = vec![
+            line("scene", &self.scene),
+            line("objects", &with_types(c.objects, &self.objects_by_type)),
+            line("primitives", &format!("{} ({} triangles, {} spheres)", c.primitives, c.triangles, c.spheres)),
+            line("materials", &self.materials.to_string()),
+            line("textures", &list(&self.textures)),
+            line("lights", &with_types(c.lights, &self.lights_by_type)),
+            line("cameras", &cameras.collect::<Vec<_>>().join(", ")),
+            line("bounds", &bounds),
+            line("memory", &format!("{:.1} MiB", c.scene_bytes as f64 / f64::from(1 << 20))),
+            line("depth", &format!("{} rays on a path", self.max_depth)),
+        ];
+        lines.push("pipeline".to_owned());
+        lines.extend(self.pipeline.iter().map(|reason| format!("  {reason}")));
+        lines.push(line("warnings", &self.warnings.len().to_string()));
+        lines.extend(self.warnings.iter().map(|warning| format!("  {warning}")));
+        lines.join("\n")
+    }
+}
+
+impl CameraInfo {
+    fn of(named: &NamedCamera) -> Self {
+        let camera = &named.camera;
+        Self {
+            name: named.name.clone(),
+            eye: camera.eye.into(),
+            look_at: camera.look_at.into(),
+            up: camera.up.into(),
+            fov: camera.fov,
+        }
+    }
+}
+
+fn line(name: &str, value: &str) -> String {
+    format!("{name:<12}{value}")
+}
+
+fn list(items: &[String]) -> String {
+    if items.is_empty() { "0".to_owned() } else { format!("{} ({})", items.len(), items.join(", ")) }
+}
+
+fn with_types(total: u64, types: &BTreeMap<&'static str, usize>) -> String {
+    let parts: Vec<_> = types.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+    if parts.is_empty() { total.to_string() } else { format!("{total} ({})", parts.join(", ")) }
+}
+
+fn tally(kinds: impl Iterator<Item = &'static str>) -> BTreeMap<&'static str, usize> {
+    kinds.fold(BTreeMap::new(), |mut counts, kind| {
+        *counts.entry(kind).or_default() += 1;
+        counts
+    })
+}
+
+fn kind_of_light(light: &Light) -> &'static str {
+    match light.kind {
+        LightKind::Point { .. } => "point",
+        LightKind::Directional { .. } => "directional",
+        LightKind::Spot { .. } => "spot",
+    }
+}
+
+fn describe_texture(texture: &Texture) -> String {
+    match texture {
+        Texture::Image(image) => format!("image {}x{}", image.width, image.height),
+        Texture::Checker { size, .. } => format!("checker of size {size}"),
+    }
+}

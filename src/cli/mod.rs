@@ -1,0 +1,34 @@
+//! The command line: one file a command, and what the commands share.
+
+mod arguments;
+mod compare;
+mod failure;
+mod frames;
+mod info;
+mod interrupt;
+mod options;
+mod output;
+mod progress;
+mod render;
+mod stage;
+mod stdout;
+mod values;
+mod view;
+
+pub use arguments::command;
+pub use failure::Failure;
+
+use clap::ArgMatches;
+
+/// Runs the command that was asked for.
+///
+/// # Errors
+/// [`Failure`] with the exit code and one line of text.
+pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
+    match asked.subcommand() {
+        Some(("render", asked)) => render::run(asked),
+        Some(("info", asked)) => info::run(asked),
+        Some(("compare", asked)) => compare::run(asked),
+        _ => view::run(asked),
+    }
+}

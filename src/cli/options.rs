@@ -1,0 +1,170 @@
+//! The options that view and render share: from what was typed to what is meant.
+
+use super::Failure;
+use super::values::Size;
+use clap::ArgMatches;
+use glam::Vec3;
+use raywalk::picture::MAX_PIXELS;
+use raywalk::render::Planes;
+use raywalk::scene::Limits;
+use raywalk::settings::{PRESETS, ROWS, Settings};
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// How a scene is read, by any command.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    /// The file; `None` for the built-in scene.
+    pub scene: Option<PathBuf>,
+    pub limits: Limits,
+    pub strict: bool,
+    pub quiet: bool,
+}
+
+/// What of a camera the command line changes.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// Name or index of a camera of the scene.
+    pub camera: Option<String>,
+    pub eye: Option<Vec3>,
+    pub look_at: Option<Vec3>,
+    pub up: Option<Vec3>,
+    pub fov: Option<f32>,
+    pub size: Option<Size>,
+}
+
+/// Everything that view and render share.
+#[derive(Clone, Debug)]
+pub struct Options {
+    pub reading: Reading,
+    pub view: View,
+    pub path: Option<PathBuf>,
+    pub frames: Option<Range<u64>>,
+    pub planes: Planes,
+    /// File for the record of the run, or `-`.
+    pub stats: Option<String>,
+    pub settings: Settings,
+}
+
+impl Reading {
+    /// The meaning of `asked`.
+    pub fn of(asked: &ArgMatches) -> Result<Self, Failure> {
+        let mut limits = Limits::default();
+        for (name, value) in asked.get_many::<(String, String)>("limit").into_iter().flatten() {
+            limits.set(name, value).map_err(Failure::Usage)?;
+        }
+        Ok(Self {
+            scene: asked.get_one("scene").cloned(),
+            limits,
+            strict: asked.get_flag("strict"),
+            quiet: asked.get_flag("quiet"),
+        })
+    }
+}
+
+impl Options {
+    /// The meaning of `asked`, settings starting from `preset` unless another is named.
+    pub fn of(asked: &ArgMatches, preset: fn() -> Settings) -> Result<Self, Failure> {
+        let reading = Reading::of(asked)?;
+        let view = View {
+            camera: asked.get_one("camera").cloned(),
+            eye: asked.get_one("eye").copied(),
+            look_at: asked.get_one("look-at").copied(),
+            up: asked.get_one("up").copied(),
+            fov: asked.get_one("fov").copied(),
+            size: asked.get_one("size").copied(),
+        };
+        if let Some(size) = view.size {
+            check_size(size, &reading.limits).map_err(Failure::Usage)?;
+        }
+        let mut planes = Planes::default();
+        for plane in asked.get_many::<String>("aov").into_iter().flatten() {
+            match plane.as_str() {
+                "depth" => planes.depth = true,
+                "normal" => planes.normal = true,
+                "object" => planes.object = true,
+                _ => planes.primitive = true,
+            }
+        }
+        Ok(Self {
+            reading,
+            view,
+            path: asked.get_one("path").cloned(),
+            frames: asked.get_one("frames").cloned(),
+            planes,
+            stats: asked.get_one("stats").cloned(),
+            settings: settings(asked, preset)?,
+        })
+    }
+}
+
+/// The preset, then every flag that was given: a flag beats the preset, whatever their order.
+fn settings(asked: &ArgMatches, preset: fn() -> Settings) -> Result<Settings, Failure> {
+    let named = asked.get_one::<String>("preset").and_then(|name| PRESETS.iter().find(|p| p.name == name));
+    let mut settings = named.map_or(preset, |preset| preset.settings)();
+    for row in ROWS {
+        if let Some(text) = asked.get_one::<String>(row.name) {
+            (row.set)(&mut settings, text).map_err(|message| Failure::Usage(format!("--{}: {message}", row.name)))?;
+        }
+    }
+    Ok(settings)
+}
+
+/// Refuses pictures that no machine should be asked for.
+pub fn check_size(Size { width, height }: Size, limits: &Limits) -> Result<(), String> {
+    let edge = limits.picture_edge;
+    if u64::from(width.max(height)) > edge {
+        return Err(format!("{width}x{height}: more than {edge} pixels a side; raise it with --limit picture-edge=N"));
+    }
+    if u64::from(width) * u64::from(height) > MAX_PIXELS {
+        return Err(format!("{width}x{height}: more than {MAX_PIXELS} pixels; choose a smaller size"));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::command;
+    use super::*;
+    use raywalk::settings::{Fill, Visibility};
+
+    fn options(line: &[&str]) -> Result<Options, Failure> {
+        let asked = command().try_get_matches_from(line).expect("it can be typed");
+        Options::of(asked.subcommand_matches("render").unwrap_or(&asked), Settings::exact)
+    }
+
+    #[test]
+    fn a_flag_beats_the_preset_in_either_order() {
+        for line in [["--preset=balanced", "--fill=hit"], ["--fill=hit", "--preset=balanced"]] {
+            let settings = options(&["raywalk", "render", line[0], line[1]]).expect("right").settings;
+            assert_eq!((settings.visibility, settings.fill), (Visibility::Subsample, Fill::Hit));
+        }
+        assert_eq!(options(&["raywalk", "render"]).expect("right").settings, Settings::exact());
+    }
+
+    #[test]
+    fn negative_numbers_are_values() {
+        let line = ["raywalk", "render", "--eye", "-7,10,-10", "--threads", "-1", "--exposure", "-0.5"];
+        let options = options(&line).expect("right");
+        assert_eq!(options.view.eye, Some(Vec3::new(-7.0, 10.0, -10.0)));
+        assert_eq!((options.settings.threads, options.settings.exposure), (-1, -0.5));
+    }
+
+    #[test]
+    fn planes_and_limits_add_up() {
+        let line = ["raywalk", "render", "--aov", "depth,object", "--aov", "normal", "--limit", "objects=7"];
+        let options = options(&line).expect("right");
+        assert_eq!(options.planes, Planes { depth: true, normal: true, object: true, primitive: false });
+        assert_eq!(options.reading.limits.objects, 7);
+    }
+
+    #[test]
+    fn monstrous_pictures_are_refused() {
+        for size in ["100000x100000", "32768x32768", "1x100000"] {
+            let failure = options(&["raywalk", "render", "--size", size]).expect_err(size);
+            assert_eq!(failure.exit_code(), Failure::WRONG_USAGE);
+            assert!(failure.to_string().starts_with(size));
+        }
+        assert!(options(&["raywalk", "render", "--size", "8192x8192"]).is_ok());
+    }
+}

@@ -1,0 +1,131 @@
+//! `raywalk render`: frames without a window.
+
+use super::frames::Frames;
+use super::interrupt::Interrupt;
+use super::options::Options;
+use super::output::{self, Output};
+use super::progress::Progress;
+use super::stage::Stage;
+use super::{Failure, stdout};
+use clap::ArgMatches;
+use raywalk::math::simd::SimdToken;
+use raywalk::measure::record::Subject;
+use raywalk::measure::run::{WARM_UP_FRAMES, timed_frame};
+use raywalk::measure::{Record, Run};
+use raywalk::picture::{PendingFile, WriteOptions};
+use raywalk::render::{Film, Scratch, thread_count};
+use raywalk::settings::Settings;
+use std::path::{Path, PathBuf};
+
+/// Renders what `asked` says.
+pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
+    let options = Options::of(asked, Settings::exact)?;
+    let write = WriteOptions { binary: asked.get_flag("binary") };
+    let output = asked.get_one::<PathBuf>("output").map(PathBuf::as_path);
+    output::check_planes(output, options.planes)?;
+    let frames = Frames::of(&options)?;
+    let output = output.map(|path| Output::new(path, write, &frames)).transpose()?;
+    let interrupt = Interrupt::listen()?;
+    let stage = Stage::set(&options)?;
+    render(&stage, &frames, &options, output, &interrupt)
+}
+
+/// Renders `frames` of `stage`, and writes the pictures and the record asked for.
+pub fn render(
+    stage: &Stage,
+    frames: &Frames,
+    options: &Options,
+    mut output: Option<Output>,
+    interrupt: &Interrupt,
+) -> Result<(), Failure> {
+    interrupt.careful();
+    let (width, height) = (stage.size.width, stage.size.height);
+    if let (Some(warning), false) = (&frames.warning, options.reading.quiet) {
+        stdout::note(&format!("warning: {warning}"));
+    }
+    if let Some(output) = &mut output {
+        output.prepare(width, height, frames)?;
+    }
+    let record = options.stats.as_deref().map(RecordTarget::prepare).transpose()?;
+
+    let mut scratch = Scratch::new();
+    scratch.cancel = interrupt.token.clone();
+    let mut tracer = Tracer { stage, frames, interrupt, scratch, film: Film::new(width, height, options.planes) };
+    if record.is_some() {
+        let mut untimed = Run::default();
+        for _ in 0..WARM_UP_FRAMES {
+            tracer.trace(frames.range.start, &mut untimed)?;
+        }
+    }
+    let mut run = Run::default();
+    let progress = Progress::new(frames.range.end - frames.range.start, options.reading.quiet);
+    for number in frames.range.clone() {
+        let film = tracer.trace(number, &mut run)?;
+        if let Some(output) = &mut output {
+            output.write(number, frames, film)?;
+        }
+        progress.advance();
+    }
+    drop(progress);
+    interrupt.check()?;
+    match record {
+        Some(target) => target.write(&record_of(stage, &run)),
+        None => Ok(()),
+    }
+}
+
+/// What all frames of a run share.
+struct Tracer<'a> {
+    stage: &'a Stage,
+    frames: &'a Frames,
+    interrupt: &'a Interrupt,
+    scratch: Scratch,
+    film: Film,
+}
+
+impl Tracer<'_> {
+    /// Traces frame `number` and adds its cost to `run`.
+    fn trace(&mut self, number: u64, run: &mut Run) -> Result<&Film, Failure> {
+        let camera = self.frames.camera(number, &self.stage.camera)?;
+        let (scene, settings) = (&self.stage.loaded.scene, &self.stage.settings);
+        let completed = timed_frame(run, scene, &camera, settings, &mut self.scratch, &mut self.film);
+        // Asked again: Ctrl-C may come while the last tile is traced.
+        self.interrupt.check()?;
+        if completed { Ok(&self.film) } else { Err(Failure::Interrupted) }
+    }
+}
+
+fn record_of(stage: &Stage, run: &Run) -> Record {
+    let build_ms = stage.loaded.scene.build_ms;
+    let subject = Subject {
+        scene: &stage.loaded.scene,
+        settings: &stage.settings,
+        width: stage.size.width,
+        height: stage.size.height,
+        load_ms: stage.loaded.total_ms - build_ms,
+        build_ms,
+        threads: thread_count(stage.settings.threads),
+        simd: SimdToken::new(stage.settings.simd).unwrap_or_else(SimdToken::best).name(),
+    };
+    Record::new(subject, run)
+}
+
+/// Where the record of the run goes.
+enum RecordTarget {
+    Stdout,
+    File(PendingFile),
+}
+
+impl RecordTarget {
+    fn prepare(name: &str) -> Result<Self, Failure> {
+        Ok(if name == "-" { Self::Stdout } else { Self::File(PendingFile::create(Path::new(name))?) })
+    }
+
+    fn write(self, record: &Record) -> Result<(), Failure> {
+        let text = stdout::json(record)?;
+        match self {
+            Self::Stdout => stdout::print(&text),
+            Self::File(file) => Ok(file.commit(|sink| Ok(writeln!(sink, "{text}")?))?),
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Rays that do not keep together: one ray at a time against eight boxes, then against eight primitives.
+//!
+//! A packet whose rays fly apart visits the union of what they need. Such packets come here instead, lane by lane,
+//! with the same kernels, so the same hits.
+
+use super::bvh::{Bvh, Child, Leaf, Node};
+use super::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
+use super::traverse::{Pending, STACK};
+use super::{BLOCK, Block, Packet, PrimitiveKind, Search, SphereTerms, Visitor};
+use crate::math::V3;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8};
+use glam::Vec3;
+
+/// One ray of a packet.
+struct Ray<S: Simd> {
+    lane: usize,
+    origin: V3<f32x8<S>>,
+    direction: V3<f32x8<S>>,
+    origin_plus: Vec3,
+    origin_minus: Vec3,
+    inverse: Vec3,
+}
+
+impl<S: Simd> Ray<S> {
+    #[inline(always)]
+    fn of_packet(simd: S, packet: &Packet<S>, lane: usize) -> Self {
+        let (origin, padding) = (packet.origin.lane(lane), packet.padding());
+        Self {
+            lane,
+            origin: V3::splat(simd, origin),
+            direction: V3::splat(simd, packet.direction.lane(lane)),
+            origin_plus: origin + padding,
+            origin_minus: origin - padding,
+            inverse: packet.inverse_of(lane),
+        }
+    }
+
+    /// Which of a node's padded boxes the ray enters before `limit`, and how far away: the arithmetic of
+    /// [`Packet::enter_box`], eight boxes at once.
+    #[inline(always)]
+    fn enter_boxes(&self, simd: S, node: &Node, limit: f32) -> (u64, f32x8<S>) {
+        let mut near = f32x8::splat(simd, 0.0);
+        let mut far = f32x8::splat(simd, limit);
+        for axis in 0..3 {
+            let inverse = self.inverse[axis];
+            let to_min = (f32x8::from_slice(simd, &node.min[axis]) - self.origin_plus[axis]) * inverse;
+            let to_max = (f32x8::from_slice(simd, &node.max[axis]) - self.origin_minus[axis]) * inverse;
+            let (entry, exit) = if inverse < 0.0 { (to_max, to_min) } else { (to_min, to_max) };
+            near = near.max(entry);
+            far = far.min(exit);
+        }
+        (near.simd_le(far).to_bitmask(), near)
+    }
+}
+
+impl Search<'_> {
+    /// Walks the tree for each ray of a packet on its own.
+    #[inline(always)]
+    pub(super) fn visit_tree_by_rays<S: Simd, V: Visitor<S>>(
+        &self,
+        simd: S,
+        bvh: &Bvh,
+        packet: &Packet<S>,
+        stack: &mut [Pending; STACK],
+        visitor: &mut V,
+    ) {
+        for lane in 0..S::f32s::LEN {
+            if visitor.lane_limit(lane) >= 0.0 {
+                let ray = Ray::of_packet(simd, packet, lane);
+                self.visit_tree_by_ray(simd, bvh, &ray, stack, visitor);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn visit_tree_by_ray<S: Simd, V: Visitor<S>>(
+        &self,
+        simd: S,
+        bvh: &Bvh,
+        ray: &Ray<S>,
+        stack: &mut [Pending; STACK],
+        visitor: &mut V,
+    ) {
+        stack[0] = Pending { child: Child::Node(0), near: 0.0 };
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let Pending { child, near } = stack[depth];
+            let limit = visitor.lane_limit(ray.lane);
+            if near > limit {
+                if limit < 0.0 {
+                    return;
+                }
+                continue;
+            }
+            let node = match child {
+                Child::None => continue,
+                Child::Leaf(leaf) => {
+                    self.visit_leaf_by_ray(simd, leaf, ray, visitor);
+                    continue;
+                }
+                Child::Node(number) => &bvh.nodes[number as usize],
+            };
+            let (mut candidates, distances) = ray.enter_boxes(simd, node, limit);
+            let bottom = depth;
+            while candidates != 0 && depth < STACK {
+                let place = candidates.trailing_zeros() as usize;
+                candidates &= candidates - 1;
+                let near = distances[place];
+                // Sorted so that the nearest is on top.
+                let mut at = depth;
+                while at > bottom && stack[at - 1].near < near {
+                    stack[at] = stack[at - 1];
+                    at -= 1;
+                }
+                stack[at] = Pending { child: node.children[place], near };
+                depth += 1;
+            }
+        }
+    }
+}
+
+/// Distances to eight primitives: spheres by the terms at hand, all others by their kernel.
+macro_rules! test {
+    (Sphere, $blocks:ident, $search:ident, $simd:ident, $block:expr, $ray:ident, $t_min:ident) => {
+        match $search.sphere_terms {
+            SphereTerms::None => {
+                Sphere::intersect(&$search.geometry.spheres[$block].load($simd), $ray.origin, $ray.direction, $t_min)
+            }
+            SphereTerms::Exact(terms) => Sphere::intersect_terms(&terms[$block].load($simd), $ray.direction, $t_min),
+            SphereTerms::Thesis(terms) => Sphere::intersect_thesis(&terms[$block].load($simd), $ray.direction, $t_min),
+        }
+    };
+    ($kernel:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $ray:ident, $t_min:ident) => {
+        $kernel::intersect(&$search.geometry.$blocks[$block].load($simd), $ray.origin, $ray.direction, $t_min)
+    };
+}
+
+macro_rules! define_leaf_tests {
+    ($($kernel:ident $fields:literal $blocks:ident,)+) => {
+        impl Search<'_> {
+            /// Tests one ray against the primitives of a leaf, all at once.
+            fn visit_leaf_by_ray<S: Simd, V: Visitor<S>>(&self, simd: S, leaf: Leaf, ray: &Ray<S>, visitor: &mut V) {
+                simd.vectorize(
+                    #[inline(always)]
+                    || match leaf.kind {
+                        $(PrimitiveKind::$kernel => {
+                            let number = leaf.block as usize;
+                            let Block { indices, len, .. } = &self.geometry.$blocks[number];
+                            let t_min = visitor.lane_t_min(simd, ray.lane, indices);
+                            let (mask, t) = test!($kernel, $blocks, self, simd, number, ray, t_min);
+                            let used = (1_u64 << len) - 1;
+                            let mut hits = mask.to_bitmask() & used;
+                            while hits != 0 {
+                                let place = hits.trailing_zeros() as usize;
+                                hits &= hits - 1;
+                                let primitive = indices[place];
+                                if t[place] <= visitor.lane_limit(ray.lane) && visitor.accepts(primitive) {
+                                    visitor.lane_hit(ray.lane, t[place], primitive);
+                                }
+                            }
+                        })+
+                    },
+                );
+            }
+        }
+    };
+}
+for_each_primitive!(define_leaf_tests);
+
+const _: () = assert!(BLOCK == 8, "a block's primitives fill eight lanes");

@@ -1,0 +1,49 @@
+//! What a scene holds, in numbers.
+
+use crate::geometry::PrimitiveKind;
+use crate::scene::texture::Texture;
+use crate::scene::{Material, Object, Scene};
+use serde::Serialize;
+
+/// How much of what a scene holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct SceneCounts {
+    /// Bytes held by geometry, tree, objects, materials and textures.
+    pub scene_bytes: u64,
+    /// Triangles.
+    pub triangles: u64,
+    /// Spheres.
+    pub spheres: u64,
+    /// Everything a ray can meet, triangles and spheres included.
+    pub primitives: u64,
+    /// Lights, the headlight of a scene without any included.
+    pub lights: u64,
+    /// Leaf objects.
+    pub objects: u64,
+}
+
+impl SceneCounts {
+    /// Counts `scene`.
+    pub fn of(scene: &Scene) -> Self {
+        let geometry = &scene.geometry;
+        let texels: usize = scene.textures.iter().map(texture_bytes).sum();
+        let tables =
+            scene.objects.capacity() * size_of::<Object>() + scene.materials.capacity() * size_of::<Material>();
+        Self {
+            scene_bytes: (texels + tables + geometry.bytes()) as u64,
+            triangles: geometry.count(PrimitiveKind::Triangle) as u64,
+            spheres: geometry.count(PrimitiveKind::Sphere) as u64,
+            primitives: geometry.len() as u64,
+            lights: (scene.lights.len() + usize::from(scene.headlight)) as u64,
+            objects: scene.objects.len() as u64,
+        }
+    }
+}
+
+fn texture_bytes(texture: &Texture) -> usize {
+    size_of::<Texture>()
+        + match texture {
+            Texture::Image(image) => image.texels.len() * 3,
+            Texture::Checker { .. } => 0,
+        }
+}

@@ -1,0 +1,84 @@
+//! Separable filters over one channel.
+
+use rayon::prelude::*;
+
+/// One channel of a picture, row by row.
+#[derive(Clone, Debug)]
+pub(super) struct Plane {
+    pub width: usize,
+    pub height: usize,
+    pub values: Vec<f32>,
+}
+
+impl Plane {
+    /// A plane of `f(i)` for each pixel index `i`.
+    pub fn from_fn(width: usize, height: usize, f: impl Fn(usize) -> f32) -> Self {
+        Self { width, height, values: (0..width * height).map(f).collect() }
+    }
+
+    /// Correlates rows with `horizontal` and columns with `vertical`, both of odd length and centred; pixels beyond
+    /// the border repeat the border's.
+    pub fn filtered(&self, horizontal: &[f32], vertical: &[f32]) -> Self {
+        let rows = self.map_rows(|y, row| {
+            let source = &self.values[y * self.width..][..self.width];
+            for (x, out) in row.iter_mut().enumerate() {
+                *out = taps(horizontal, x, self.width, |i| source[i]);
+            }
+        });
+        rows.map_rows(|y, row| {
+            for (x, out) in row.iter_mut().enumerate() {
+                *out = taps(vertical, y, self.height, |i| rows.values[i * self.width + x]);
+            }
+        })
+    }
+
+    fn map_rows(&self, fill: impl Fn(usize, &mut [f32]) + Sync) -> Self {
+        let mut values = vec![0.0; self.values.len()];
+        values.par_chunks_mut(self.width).enumerate().for_each(|(y, row)| fill(y, row));
+        Self { values, ..*self }
+    }
+}
+
+/// The weighted sum of the values around `center`, clamped to `0..len`.
+fn taps(weights: &[f32], center: usize, len: usize, value: impl Fn(usize) -> f32) -> f32 {
+    let radius = weights.len() / 2;
+    let index = |tap: usize| (center + tap).saturating_sub(radius).min(len - 1);
+    weights.iter().enumerate().map(|(tap, weight)| weight * value(index(tap))).sum()
+}
+
+/// exp(-x² / 2σ²) for x from `-radius` to `radius`, in pixels; not normalised.
+pub(super) fn gaussian(sigma: f64, radius: usize) -> Vec<f64> {
+    let radius = radius as i64;
+    (-radius..=radius).map(|x| (-((x * x) as f64) / (2.0 * sigma * sigma)).exp()).collect()
+}
+
+/// The weights divided by their sum, as the filter takes them.
+pub(super) fn normalized(weights: &[f64]) -> Vec<f32> {
+    let sum: f64 = weights.iter().sum();
+    weights.iter().map(|w| (w / sum) as f32).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_filter_keeps_a_flat_plane_and_moves_a_point_where_its_weights_say() {
+        let weights = normalized(&gaussian(1.5, 5));
+        let flat = Plane { width: 3, height: 2, values: vec![0.25; 6] };
+        assert!(flat.filtered(&weights, &weights).values.iter().all(|v| (v - 0.25).abs() < 1e-6));
+
+        let mut point = Plane { width: 5, height: 4, values: vec![0.0; 20] };
+        point.values[5 + 2] = 1.0;
+        let moved = point.filtered(&[1.0, 0.0, 0.0], &[0.0, 0.0, 1.0]);
+        let expected = moved.values.iter().position(|&v| v == 1.0);
+        assert_eq!(expected, Some(3), "one to the right, one up: a correlation");
+    }
+
+    #[test]
+    fn borders_repeat() {
+        let ramp = Plane { width: 3, height: 1, values: vec![0.0, 1.0, 2.0] };
+        assert_eq!(ramp.filtered(&[1.0, 0.0, 0.0], &[1.0]).values, [0.0, 0.0, 1.0]);
+        assert_eq!(ramp.filtered(&[0.0, 0.0, 1.0], &[1.0]).values, [1.0, 2.0, 2.0]);
+    }
+}

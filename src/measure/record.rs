@@ -1,0 +1,92 @@
+//! The record of a run: what `--stats` writes, one JSON object.
+
+use super::counts::SceneCounts;
+use super::run::{CpuTime, Run};
+use super::statistics::Spread;
+use super::system::peak_rss_bytes;
+use crate::scene::Scene;
+use crate::settings::{ROWS, Settings};
+use serde::Serialize;
+use serde_json::Value;
+
+/// What was rendered and how long its preparation took.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The settings, resolved: nothing is left to the scene or the machine.
+    pub settings: &'a Settings,
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Milliseconds to read the scene, textures and models included, without `build_ms`.
+    pub load_ms: f64,
+    /// Milliseconds to build the kernels' data and the tree.
+    pub build_ms: f64,
+    /// Worker threads.
+    pub threads: usize,
+    /// Instruction set of the kernels.
+    pub simd: &'static str,
+}
+
+/// One run as it is written. Counts and stage times are means per frame.
+#[derive(Debug, Serialize)]
+pub struct Record {
+    scene: String,
+    width: u32,
+    height: u32,
+    frames: usize,
+    threads: usize,
+    simd: &'static str,
+    settings: Value,
+    load_ms: f64,
+    build_ms: f64,
+    frame_ms: Spread,
+    cpu_ms: CpuTime,
+    rays: Value,
+    pixels: Value,
+    supersampled: Value,
+    stages_ms: Value,
+    shadow_cache: Value,
+    /// `null` where the system does not tell.
+    peak_rss_bytes: Option<u64>,
+    #[serde(flatten)]
+    counts: SceneCounts,
+}
+
+impl Record {
+    /// The record of `run`.
+    pub fn new(subject: Subject<'_>, run: &Run) -> Self {
+        let Subject { scene, settings, width, height, load_ms, build_ms, threads, simd } = subject;
+        let total = run.total();
+        Self {
+            scene: scene.name.clone(),
+            width,
+            height,
+            frames: run.frames(),
+            threads,
+            simd,
+            settings: ROWS.iter().map(|row| (row.name.to_owned(), typed((row.get)(settings)))).collect(),
+            load_ms,
+            build_ms,
+            frame_ms: run.frame_ms(),
+            cpu_ms: run.cpu_ms(),
+            rays: run.per_frame(&total.rays),
+            pixels: run.per_frame(&total.pixels),
+            supersampled: run.per_frame(&total.supersampled),
+            stages_ms: run.per_frame(&total.stages_ms),
+            shadow_cache: run.per_frame(&total.shadow_cache),
+            peak_rss_bytes: peak_rss_bytes(),
+            counts: SceneCounts::of(scene),
+        }
+    }
+}
+
+/// A setting's text as JSON: numbers as numbers, names as strings.
+fn typed(text: String) -> Value {
+    match text.parse::<i64>() {
+        Ok(whole) => whole.into(),
+        Err(_) => text.parse::<f64>().map_or_else(|_| Value::String(text), Value::from),
+    }
+}

@@ -1,0 +1,81 @@
+//! Eight bits a channel, sRGB-encoded: PNG, JPEG, BMP.
+
+use super::PictureError;
+use super::format::{Sink, WriteOptions};
+use crate::render::Film;
+use image::codecs::{bmp::BmpEncoder, jpeg::JpegEncoder, png::PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+
+/// JPEG quality: no visible loss on rendered edges, a third of the PNG's size.
+const JPEG_QUALITY: u8 = 95;
+
+/// An 8-bit sRGB picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EightBit {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Red, green, blue, row by row from the top: 3 · width · height bytes.
+    pub rgb: Vec<u8>,
+}
+
+impl EightBit {
+    /// The film's 8-bit picture; its alpha is always opaque and is left out.
+    pub fn of_film(film: &Film) -> Self {
+        let rgb = film.rgba().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+        Self { width: film.width(), height: film.height(), rgb }
+    }
+
+    fn encode_with(&self, encoder: impl ImageEncoder) -> Result<(), PictureError> {
+        Ok(encoder.write_image(&self.rgb, self.width, self.height, ExtendedColorType::Rgb8)?)
+    }
+}
+
+pub(super) fn png(picture: &EightBit, _: WriteOptions, sink: &mut dyn Sink) -> Result<(), PictureError> {
+    picture.encode_with(PngEncoder::new(sink))
+}
+
+pub(super) fn jpeg(picture: &EightBit, _: WriteOptions, sink: &mut dyn Sink) -> Result<(), PictureError> {
+    picture.encode_with(JpegEncoder::new_with_quality(sink, JPEG_QUALITY))
+}
+
+pub(super) fn bmp(picture: &EightBit, _: WriteOptions, mut sink: &mut dyn Sink) -> Result<(), PictureError> {
+    picture.encode_with(BmpEncoder::new(&mut sink))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Cursor;
+
+    fn gradient() -> EightBit {
+        EightBit {
+            width: 16,
+            height: 8,
+            rgb: (0..16 * 8).flat_map(|i| [i as u8, 255 - i as u8, 2 * i as u8]).collect(),
+        }
+    }
+
+    #[test]
+    fn png_and_bmp_keep_every_byte() {
+        for (encode, format) in
+            [(png as fn(&_, _, &mut dyn Sink) -> _, image::ImageFormat::Png), (bmp, image::ImageFormat::Bmp)]
+        {
+            let mut bytes = Cursor::new(Vec::new());
+            encode(&gradient(), WriteOptions::default(), &mut bytes).expect("memory takes it");
+            let back = image::load_from_memory_with_format(bytes.get_ref(), format).expect("it is a picture").to_rgb8();
+            assert_eq!((back.width(), back.height()), (16, 8));
+            assert_eq!(back.into_raw(), gradient().rgb);
+        }
+    }
+
+    #[test]
+    fn jpeg_stays_close() {
+        let flat = EightBit { width: 16, height: 16, rgb: [200, 100, 50].repeat(256) };
+        let mut bytes = Cursor::new(Vec::new());
+        jpeg(&flat, WriteOptions::default(), &mut bytes).expect("memory takes it");
+        let back = image::load_from_memory(bytes.get_ref()).expect("it is a picture").to_rgb8().into_raw();
+        assert!(back.iter().zip(&flat.rgb).all(|(a, b)| a.abs_diff(*b) <= 2));
+    }
+}

@@ -1,0 +1,183 @@
+//! Files that appear under their name only when they are complete.
+
+use super::PictureError;
+use super::format::Sink;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// A file being written: made under a temporary name beside its target, renamed by [`commit`](Self::commit),
+/// removed when dropped before.
+///
+/// Making one early proves that the place can be written before a long run starts.
+#[derive(Debug)]
+pub struct PendingFile {
+    /// The name as the user gave it, for messages.
+    asked: PathBuf,
+    /// Where the complete file goes: links resolved, so that a link stays a link.
+    target: PathBuf,
+    /// `None` for devices and pipes, which are written directly.
+    temporary: Option<PathBuf>,
+    /// `None` once committed or dropped.
+    file: Option<BufWriter<File>>,
+}
+
+impl PendingFile {
+    /// Starts a file that will be called `path`.
+    ///
+    /// # Errors
+    /// [`PictureError::Io`] when the folder is missing or not writable, or `path` is a folder or write-protected.
+    pub fn create(path: &Path) -> Result<Self, PictureError> {
+        Self::open(path).map_err(PictureError::io(path, "write"))
+    }
+
+    fn open(path: &Path) -> io::Result<Self> {
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        if let Ok(metadata) = fs::metadata(&target) {
+            if metadata.is_dir() {
+                return Err(io::ErrorKind::IsADirectory.into());
+            }
+            if !metadata.is_file() {
+                let file = OpenOptions::new().write(true).open(&target)?;
+                return Ok(Self { asked: path.to_owned(), target, temporary: None, file: Some(BufWriter::new(file)) });
+            }
+            if metadata.permissions().readonly() {
+                return Err(io::ErrorKind::PermissionDenied.into());
+            }
+        }
+        let (temporary, file) = create_beside(&target)?;
+        Ok(Self { asked: path.to_owned(), target, temporary: Some(temporary), file: Some(BufWriter::new(file)) })
+    }
+
+    /// The name the file will get.
+    pub fn path(&self) -> &Path {
+        &self.asked
+    }
+
+    /// Lets `encode` write the contents, then gives the file its name.
+    ///
+    /// # Errors
+    /// What `encode` reports, with [`PictureError::Encode`] naming the file; [`PictureError::Io`] from the system.
+    pub fn commit(
+        mut self,
+        encode: impl FnOnce(&mut dyn Sink) -> Result<(), PictureError>,
+    ) -> Result<(), PictureError> {
+        if let Some(mut file) = self.file.take() {
+            encode(&mut file).map_err(|error| match error {
+                PictureError::Encode(message) => {
+                    PictureError::Io { path: self.asked.clone(), action: "write", source: io::Error::other(message) }
+                }
+                other => other,
+            })?;
+            file.flush().map_err(PictureError::io(&self.asked, "write"))?;
+        }
+        if let Some(temporary) = &self.temporary {
+            fs::rename(temporary, &self.target).map_err(PictureError::io(&self.asked, "write"))?;
+            self.temporary = None;
+        }
+        Ok(())
+    }
+}
+
+impl Drop for PendingFile {
+    fn drop(&mut self) {
+        self.file = None;
+        if let Some(temporary) = &self.temporary {
+            // Nobody is left to hear of a failure, and the final name is untouched.
+            let _ = fs::remove_file(temporary);
+        }
+    }
+}
+
+/// A new file in the folder of `target`, hidden, and named after it and this process.
+fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
+    let name = target.file_name().ok_or(io::ErrorKind::InvalidFilename)?.to_string_lossy();
+    // A run that was killed may have left its file under the same process number.
+    for attempt in 0..100 {
+        let temporary = target.with_file_name(format!(".{name}.{}-{attempt}.part", std::process::id()));
+        match OpenOptions::new().write(true).create_new(true).open(&temporary) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            result => return result.map(|file| (temporary, file)),
+        }
+    }
+    Err(io::ErrorKind::AlreadyExists.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A folder of its own for each test, removed at the end.
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn new(name: &str) -> Self {
+            let path = std::env::temp_dir().join(format!("raywalk-{name}-{}", std::process::id()));
+            fs::create_dir_all(&path).expect("the temporary folder is writable");
+            Self(path)
+        }
+
+        fn names(&self) -> Vec<String> {
+            let entries = fs::read_dir(&self.0).expect("it exists");
+            entries.map(|e| e.expect("readable").file_name().to_string_lossy().into_owned()).collect()
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn the_name_appears_only_with_the_whole_contents() {
+        let folder = Folder::new("commit");
+        let target = folder.0.join("a.png");
+        let pending = PendingFile::create(&target).expect("writable");
+        assert!(!target.exists());
+        pending.commit(|sink| Ok(sink.write_all(b"whole")?)).expect("written");
+        assert_eq!(fs::read(&target).expect("there"), b"whole");
+        assert_eq!(folder.names(), ["a.png"]);
+    }
+
+    #[test]
+    fn a_failed_or_abandoned_file_leaves_the_old_one() {
+        let folder = Folder::new("abandon");
+        let target = folder.0.join("a.png");
+        fs::write(&target, b"old").expect("writable");
+        drop(PendingFile::create(&target).expect("writable"));
+        let failed = PendingFile::create(&target).expect("writable").commit(|sink| {
+            sink.write_all(b"half")?;
+            Err(PictureError::Encode("disk full".into()))
+        });
+        let message = failed.expect_err("the encoder refused").to_string();
+        assert!(message.contains("a.png") && message.contains("disk full"), "{message}");
+        assert_eq!(fs::read(&target).expect("there"), b"old");
+        assert_eq!(folder.names(), ["a.png"]);
+    }
+
+    #[test]
+    fn places_that_cannot_be_written_are_refused_at_once() {
+        let folder = Folder::new("refuse");
+        for bad in [folder.0.join("missing/a.png"), folder.0.clone()] {
+            let error = PendingFile::create(&bad).expect_err("not writable").to_string();
+            assert!(error.contains("cannot write"), "{error}");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_a_link_and_a_device_a_device() {
+        let folder = Folder::new("link");
+        let (real, link) = (folder.0.join("real.png"), folder.0.join("link.png"));
+        fs::write(&real, b"old").expect("writable");
+        std::os::unix::fs::symlink(&real, &link).expect("links work");
+        PendingFile::create(&link).expect("writable").commit(|sink| Ok(sink.write_all(b"new")?)).expect("written");
+        assert_eq!(fs::read(&real).expect("there"), b"new");
+        assert!(fs::symlink_metadata(&link).expect("there").is_symlink());
+
+        let null = Path::new("/dev/null");
+        PendingFile::create(null).expect("writable").commit(|sink| Ok(sink.write_all(b"gone")?)).expect("written");
+        assert!(!fs::metadata(null).expect("there").is_file());
+    }
+}

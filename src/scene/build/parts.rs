@@ -1,0 +1,102 @@
+//! The shapes of one object on their way to the geometry.
+
+use super::bounds::shape_bounds;
+use super::placement::Placement;
+use crate::geometry::{Aabb, Part, PrimitiveId, Shape, VertexAttributes};
+use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
+use crate::scene::limits::{Limits, exceeded};
+use glam::{DVec3, Vec3};
+
+/// Collects the parts of one object, in ascending order of their primitive, and what all of them share.
+pub struct ObjectParts<'a> {
+    parts: &'a mut Vec<Part>,
+    limits: &'a Limits,
+    object: u32,
+    at: At,
+    /// Bounds of what was pushed.
+    pub bounds: Aabb,
+    /// Triangles without area that were left out, and the first one's primitive.
+    dropped: u64,
+    first_dropped: u32,
+}
+
+impl<'a> ObjectParts<'a> {
+    /// No parts yet of the object that stands at `at`.
+    pub fn new(parts: &'a mut Vec<Part>, limits: &'a Limits, object: u32, at: At) -> Self {
+        Self { parts, limits, object, at, bounds: Aabb::EMPTY, dropped: 0, first_dropped: 0 }
+    }
+
+    /// Makes room for `count` more parts at once.
+    pub fn reserve(&mut self, count: usize) -> Outcome<()> {
+        if (self.parts.len() + count) as u64 > self.limits.primitives {
+            return Err(Problem::new(
+                self.at,
+                format!("primitives: {}", exceeded("primitives", self.limits.primitives)),
+            ));
+        }
+        self.parts.reserve(count);
+        Ok(())
+    }
+
+    /// Adds a shape.
+    pub fn push(&mut self, primitive: u32, shape: Shape) -> Outcome<()> {
+        self.push_with(primitive, shape, None)
+    }
+
+    /// Adds a triangle of world-space corners unless rounding has left it no area; `placement` says whether
+    /// its winding has to be turned.
+    pub fn push_triangle(
+        &mut self,
+        primitive: u32,
+        corners: [DVec3; 3],
+        attributes: Option<VertexAttributes>,
+        placement: &Placement,
+    ) -> Outcome<()> {
+        let [a, b, c] = corners.map(|p| p.as_vec3());
+        if cross(a, b, c) == DVec3::ZERO {
+            if self.dropped == 0 {
+                self.first_dropped = primitive;
+            }
+            self.dropped += 1;
+            return Ok(());
+        }
+        if placement.is_mirrored() {
+            let attributes = attributes.map(|VertexAttributes { normals, uvs }| VertexAttributes {
+                normals: normals.map(|[a, b, c]| [a, c, b]),
+                uvs: uvs.map(|[a, b, c]| [a, c, b]),
+            });
+            return self.push_with(primitive, Shape::Triangle { vertices: [a, c, b] }, attributes);
+        }
+        self.push_with(primitive, Shape::Triangle { vertices: [a, b, c] }, attributes)
+    }
+
+    fn push_with(&mut self, primitive: u32, shape: Shape, attributes: Option<VertexAttributes>) -> Outcome<()> {
+        let bounds = shape_bounds(&shape);
+        let is_plane = matches!(shape, Shape::Plane { .. });
+        if !is_plane && !bounds.is_finite() {
+            return Err(Problem::new(
+                self.at,
+                "in the world, the object reaches beyond 3.4e38; make it smaller or move it nearer",
+            ));
+        }
+        self.reserve(1)?;
+        self.bounds = self.bounds.union(bounds);
+        let id = PrimitiveId { object: self.object, primitive };
+        self.parts.push(Part { shape, id, attributes });
+        Ok(())
+    }
+
+    /// The bounds of all parts, after a warning about those left out.
+    pub fn finish(self, warnings: &mut Warnings) -> Aabb {
+        if self.dropped > 0 {
+            let (n, first) = (self.dropped, self.first_dropped);
+            warnings.push(self.at, format!("triangles without area: {n} left out, the first is triangle {first}"));
+        }
+        self.bounds
+    }
+}
+
+fn cross(a: Vec3, b: Vec3, c: Vec3) -> DVec3 {
+    let a = a.as_dvec3();
+    (b.as_dvec3() - a).cross(c.as_dvec3() - a)
+}

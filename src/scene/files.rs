@@ -1,0 +1,146 @@
+//! The files that a scene may read: those of its own folder, or those embedded in the program.
+
+use super::Limits;
+use super::limits::exceeded;
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+/// Why a file could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum FileError {
+    /// The system's reason.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// The path leads out of the scene's folder.
+    #[error("the path leaves the scene's folder; move the file there and give a relative path")]
+    Outside,
+    /// A folder, a device, a pipe.
+    #[error("it is not a regular file")]
+    NotRegular,
+    /// More bytes than the limit allows.
+    #[error("the scene's files have {}", exceeded("file-bytes", *.0))]
+    TooLarge(u64),
+}
+
+/// Where files come from.
+#[derive(Debug)]
+enum Source {
+    /// A folder, canonicalised.
+    Folder(PathBuf),
+    /// Names and contents.
+    Embedded(&'static [(&'static str, &'static [u8])]),
+}
+
+/// The files that a scene may read, and how many bytes it still may.
+#[derive(Debug)]
+pub struct Files {
+    source: Source,
+    bytes_left: u64,
+    limit: u64,
+}
+
+impl Files {
+    /// The files in the folder of `scene` and in the folders within.
+    ///
+    /// # Errors
+    /// The folder does not exist or cannot be entered.
+    pub fn beside(scene: &Path, limits: &Limits) -> Result<Self, FileError> {
+        let folder = scene.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Ok(Self::new(Source::Folder(folder.canonicalize()?), limits))
+    }
+
+    /// Files embedded in the program.
+    pub fn embedded(files: &'static [(&'static str, &'static [u8])], limits: &Limits) -> Self {
+        Self::new(Source::Embedded(files), limits)
+    }
+
+    fn new(source: Source, limits: &Limits) -> Self {
+        Self { source, bytes_left: limits.file_bytes, limit: limits.file_bytes }
+    }
+
+    /// The one path of a file that the scene names, whatever links and dots the name holds.
+    ///
+    /// # Errors
+    /// There is no such file, or it is not in the scene's folder.
+    pub fn locate(&self, name: &str) -> Result<PathBuf, FileError> {
+        match &self.source {
+            Source::Embedded(_) => Ok(PathBuf::from(name)),
+            Source::Folder(folder) => {
+                // A rooted or drive-relative name would replace the folder instead of extending it.
+                let relative = Path::new(name);
+                if relative.has_root() || relative.is_absolute() {
+                    return Err(FileError::Outside);
+                }
+                let path = folder.join(relative).canonicalize()?;
+                if path.starts_with(folder) { Ok(path) } else { Err(FileError::Outside) }
+            }
+        }
+    }
+
+    /// The contents of a located file.
+    ///
+    /// # Errors
+    /// It cannot be read, is no regular file, or has more bytes than are left of the limit.
+    pub fn read(&mut self, path: &Path) -> Result<Cow<'static, [u8]>, FileError> {
+        let bytes = match self.source {
+            Source::Embedded(files) => {
+                let file = files.iter().find(|(name, _)| Path::new(name) == path);
+                Cow::Borrowed(file.ok_or(io::Error::from(io::ErrorKind::NotFound))?.1)
+            }
+            Source::Folder(_) => Cow::Owned(self.read_regular(path)?),
+        };
+        let left = self.bytes_left.checked_sub(bytes.len() as u64);
+        self.bytes_left = left.ok_or(FileError::TooLarge(self.limit))?;
+        Ok(bytes)
+    }
+
+    fn read_regular(&self, path: &Path) -> Result<Vec<u8>, FileError> {
+        // Asked before opening: opening a pipe would wait for its other end.
+        let metadata = path.metadata()?;
+        if !metadata.is_file() {
+            return Err(FileError::NotRegular);
+        }
+        if metadata.len() > self.bytes_left {
+            return Err(FileError::TooLarge(self.limit));
+        }
+        let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
+        // The file may have grown since; one byte more than allowed is enough to notice.
+        File::open(path)?.take(self.bytes_left.saturating_add(1)).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn own_sources() -> Files {
+        Files::beside(Path::new(file!()), &Limits::default()).unwrap()
+    }
+
+    #[test]
+    fn reads_files_beside_and_below_the_scene_only() {
+        let mut files = own_sources();
+        let path = files.locate("format/../format/mod.rs").unwrap();
+        assert!(!files.read(&path).unwrap().is_empty());
+        for outside in ["../lib.rs", "format/../../lib.rs", "/etc/hostname"] {
+            assert!(matches!(files.locate(outside), Err(FileError::Outside | FileError::Io(_))), "{outside}");
+        }
+        assert!(matches!(files.locate("nowhere.png"), Err(FileError::Io(_))));
+        assert!(matches!(files.locate("nul\0byte.png"), Err(FileError::Io(_))));
+        let folder = files.locate("format").unwrap();
+        assert!(matches!(files.read(&folder), Err(FileError::NotRegular)));
+    }
+
+    #[test]
+    fn all_files_together_hold_the_limit() {
+        static EMBEDDED: &[(&str, &[u8])] = &[("a", b"123"), ("b", b"456")];
+        let limits = Limits { file_bytes: 5, ..Limits::default() };
+        let mut files = Files::embedded(EMBEDDED, &limits);
+        assert_eq!(&*files.read(Path::new("a")).unwrap(), b"123");
+        assert!(files.read(Path::new("b")).unwrap_err().to_string().contains("file-bytes"));
+        assert!(files.read(Path::new("c")).is_err());
+    }
+}

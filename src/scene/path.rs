@@ -1,0 +1,263 @@
+//! Camera paths: keys in time, a smooth curve between them, the same frames on every run.
+//!
+//! ```json
+//! { "version": 1, "fps": 60,
+//!   "keys": [ { "t": 0, "position": [0, 1, 5], "look_at": [0, 1, 0], "fov": 60 },
+//!             { "t": 2, "position": [4, 1, 0], "look_at": [0, 1, 0] } ] }
+//! ```
+//!
+//! Frame `i` is taken at the first key's time plus `i / fps`; after the last key the camera stands still. Position,
+//! target and field of view each follow a cubic Hermite spline whose tangents are the three-point differences of
+//! their neighbours (Catmull-Rom for keys evenly spaced in time). A key without `fov` takes that of the camera which
+//! the walk starts from; its `up`, near and far limits hold for the whole path.
+
+use super::error::{Place, SceneError};
+use super::{Camera, Warning};
+use glam::DVec3;
+use serde::Deserialize;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// Largest file read as a path, in bytes: a hundred thousand keys.
+const MAX_BYTES: u64 = 16 << 20;
+
+/// A camera that moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraPath {
+    fps: f64,
+    /// At least one, in strictly ascending order of time.
+    keys: Vec<Key>,
+}
+
+/// Where the camera is at one moment.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Key {
+    t: f64,
+    position: [f64; 3],
+    look_at: [f64; 3],
+    fov: Option<f64>,
+}
+
+/// The file as it stands.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PathFile {
+    version: u32,
+    #[serde(default, rename = "comment")]
+    _comment: serde::de::IgnoredAny,
+    #[serde(default = "default_fps")]
+    fps: f64,
+    keys: Vec<Key>,
+}
+
+fn default_fps() -> f64 {
+    60.0
+}
+
+impl CameraPath {
+    /// Reads a path from a JSON file.
+    ///
+    /// # Errors
+    /// [`SceneError::Io`] when the file cannot be read; [`SceneError::Invalid`] with line and column, or with the
+    /// JSON pointer, when its contents are wrong.
+    pub fn load(file: &Path) -> Result<Self, SceneError> {
+        let whole = || Place { file: file.to_owned(), line_column: None, pointer: String::new() };
+        let io = |source| SceneError::Io { place: whole(), what: "the camera path".to_owned(), source };
+        let invalid = |message: String| SceneError::Invalid { place: whole(), message };
+        if !std::fs::metadata(file).map_err(io)?.is_file() {
+            return Err(invalid("not a regular file".to_owned()));
+        }
+        let mut text = String::new();
+        let read = File::open(file).map_err(io)?.take(MAX_BYTES + 1).read_to_string(&mut text).map_err(io)?;
+        if read as u64 > MAX_BYTES {
+            return Err(invalid(format!("a camera path has at most {MAX_BYTES} bytes")));
+        }
+        Self::parse(&text, file)
+    }
+
+    /// Reads a path from JSON text; `file` is named in errors.
+    ///
+    /// # Errors
+    /// [`SceneError::Invalid`] with line and column, or with the JSON pointer.
+    pub fn parse(text: &str, file: &Path) -> Result<Self, SceneError> {
+        let invalid = |line_column, pointer: String, message: String| SceneError::Invalid {
+            place: Place { file: file.to_owned(), line_column, pointer },
+            message,
+        };
+        let path: PathFile = serde_json::from_str(text).map_err(|error| {
+            let message = error.to_string();
+            // The place is told apart from the message; serde appends it to the text.
+            let message = message.split(" at line ").next().unwrap_or(&message).to_owned();
+            invalid(Some((error.line(), error.column())), String::new(), message)
+        })?;
+        let wrong = |pointer: String, message: &str| Err(invalid(None, pointer, message.to_owned()));
+        if path.version != 1 {
+            return wrong("/version".into(), "unknown version; 1 is known");
+        }
+        if !(path.fps > 0.0 && path.fps <= 10_000.0) {
+            return wrong("/fps".into(), "expected frames per second above 0, at most 10000");
+        }
+        if path.keys.is_empty() {
+            return wrong("/keys".into(), "expected at least one key");
+        }
+        for (i, key) in path.keys.iter().enumerate() {
+            let numbers = [&[key.t][..], &key.position, &key.look_at].concat();
+            if numbers.iter().any(|&v| !(v as f32).is_finite()) {
+                return wrong(format!("/keys/{i}"), "a number is too large");
+            }
+            if key.fov.is_some_and(|fov| !(fov > 0.0 && fov < 180.0)) {
+                return wrong(format!("/keys/{i}/fov"), "expected degrees above 0 and below 180");
+            }
+            if i > 0 && key.t <= path.keys[i - 1].t {
+                return wrong(format!("/keys/{i}/t"), "expected a time after that of the key before");
+            }
+        }
+        Ok(Self { fps: path.fps, keys: path.keys })
+    }
+
+    /// Frames from the first key to the last, both included.
+    pub fn frame_count(&self) -> u64 {
+        let duration = self.keys[self.keys.len() - 1].t - self.keys[0].t;
+        // A duration of whole frames must not lose its last one to rounding.
+        (duration * self.fps + 1e-6) as u64 + 1
+    }
+
+    /// The camera of frame `frame`; what a key does not say is taken from `base`.
+    pub fn camera(&self, frame: u64, base: &Camera) -> Camera {
+        let t = self.keys[0].t + frame as f64 / self.fps;
+        let fov = |key: &Key| DVec3::splat(key.fov.unwrap_or(f64::from(base.fov)));
+        Camera {
+            eye: self.at(t, |key| key.position.into()).as_vec3(),
+            look_at: self.at(t, |key| key.look_at.into()).as_vec3(),
+            // A spline may swing beyond its keys; a field of view may not leave its range.
+            fov: (self.at(t, fov).x as f32).clamp(0.01, 179.99),
+            ..*base
+        }
+    }
+
+    /// Frames `range` of the path that run past its end, worded for people; `None` when all lie on it.
+    pub fn warning(&self, file: &Path, end: u64) -> Option<Warning> {
+        let count = self.frame_count();
+        (end > count).then(|| Warning {
+            place: Place { file: file.to_owned(), line_column: None, pointer: String::new() },
+            message: format!("the path has {count} frames; the camera stands still in those after"),
+        })
+    }
+
+    /// The value of the spline through `value` of every key at time `t`.
+    fn at(&self, t: f64, value: impl Fn(&Key) -> DVec3) -> DVec3 {
+        let after = self.keys.partition_point(|key| key.t <= t);
+        let (Some(i), true) = (after.checked_sub(1), after < self.keys.len()) else {
+            return value(&self.keys[after.min(self.keys.len() - 1)]);
+        };
+        let (a, b) = (&self.keys[i], &self.keys[i + 1]);
+        let (duration, s) = (b.t - a.t, (t - a.t) / (b.t - a.t));
+        let (s2, s3) = (s * s, s * s * s);
+        value(a) * (2.0 * s3 - 3.0 * s2 + 1.0)
+            + self.tangent(i, &value) * (duration * (s3 - 2.0 * s2 + s))
+            + value(b) * (3.0 * s2 - 2.0 * s3)
+            + self.tangent(i + 1, &value) * (duration * (s3 - s2))
+    }
+
+    /// Change per second at key `i`: the slope of the parabola through it and its neighbours, at the ends the slope
+    /// of the only segment.
+    fn tangent(&self, i: usize, value: &impl Fn(&Key) -> DVec3) -> DVec3 {
+        let slope = |i: usize| {
+            let (a, b) = (&self.keys[i], &self.keys[i + 1]);
+            (value(b) - value(a)) / (b.t - a.t)
+        };
+        if i == 0 {
+            return slope(0);
+        }
+        if i + 1 == self.keys.len() {
+            return slope(i - 1);
+        }
+        let (before, after) = (self.keys[i].t - self.keys[i - 1].t, self.keys[i + 1].t - self.keys[i].t);
+        (slope(i - 1) * after + slope(i) * before) / (before + after)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    fn parse(text: &str) -> Result<CameraPath, SceneError> {
+        CameraPath::parse(text, Path::new("walk.json"))
+    }
+
+    const PATH: &str = r#"{ "version": 1, "comment": ["round the ball"], "fps": 10, "keys": [
+        { "t": 1.0, "position": [0, 0, 5], "look_at": [0, 0, 0], "fov": 60 },
+        { "t": 1.5, "position": [1, 0, 5], "look_at": [0, 1, 0] },
+        { "t": 2.5, "position": [3, 0, 5], "look_at": [0, 1, 0], "fov": 40 } ] }"#;
+
+    #[test]
+    fn the_path_goes_through_its_keys_and_stands_still_after_the_last() {
+        let path = parse(PATH).expect("it is right");
+        let base = Camera { fov: 50.0, up: Vec3::X, ..Camera::default() };
+        assert_eq!(path.frame_count(), 16);
+        for (frame, x, fov) in [(0, 0.0, 60.0), (5, 1.0, 50.0), (15, 3.0, 40.0), (1000, 3.0, 40.0)] {
+            let camera = path.camera(frame, &base);
+            assert!((camera.eye.x - x).abs() < 1e-6, "frame {frame}: {camera:?}");
+            assert!((camera.fov - fov).abs() < 1e-4, "frame {frame}: {camera:?}");
+            assert_eq!(camera.up, Vec3::X);
+        }
+    }
+
+    #[test]
+    fn even_motion_stays_even_whatever_the_spacing_of_keys() {
+        let path = parse(PATH).expect("it is right");
+        for frame in 0..=15 {
+            let x = path.camera(frame, &Camera::default()).eye.x;
+            assert!((x - frame as f32 * 0.2).abs() < 1e-6, "frame {frame}: {x}");
+        }
+    }
+
+    #[test]
+    fn speed_does_not_jump_at_a_key() {
+        let path = parse(
+            r#"{ "version": 1, "fps": 1000, "keys": [
+            { "t": 0, "position": [0, 0, 0], "look_at": [0, 0, -1] }, { "t": 1, "position": [4, 0, 0], "look_at": [0, 0, -1] },
+            { "t": 3, "position": [5, 2, 0], "look_at": [0, 0, -1] }, { "t": 4, "position": [0, 3, 0], "look_at": [0, 0, -1] } ] }"#,
+        )
+        .expect("it is right");
+        let eye = |frame| path.camera(frame, &Camera::default()).eye;
+        for key in [1000, 3000] {
+            let (before, after) = (eye(key) - eye(key - 1), eye(key + 1) - eye(key));
+            assert!((after - before).length() < 0.02 * before.length(), "{before} {after}");
+        }
+    }
+
+    #[test]
+    fn one_key_is_a_path_of_one_frame() {
+        let path = parse(r#"{ "version": 1, "keys": [ { "t": 7, "position": [1, 2, 3], "look_at": [0, 0, 0] } ] }"#);
+        let path = path.expect("it is right");
+        assert_eq!(path.frame_count(), 1);
+        assert_eq!(path.camera(0, &Camera::default()).eye, Vec3::new(1.0, 2.0, 3.0));
+        assert_eq!(path.warning(Path::new("walk.json"), 1), None);
+        assert!(path.warning(Path::new("walk.json"), 2).is_some());
+    }
+
+    #[test]
+    fn wrong_paths_are_told_with_their_place() {
+        let key = |t: &str| format!(r#"{{ "t": {t}, "position": [0, 0, 5], "look_at": [0, 0, 0] }}"#);
+        let cases = [
+            ("{ \"version\": 1,\n \"kyes\": [] }".to_owned(), "walk.json:2:"),
+            (r#"{ "version": 2, "keys": [] }"#.to_owned(), "/version"),
+            (r#"{ "version": 1, "keys": [] }"#.to_owned(), "/keys"),
+            (format!(r#"{{ "version": 1, "fps": 0, "keys": [{}] }}"#, key("0")), "/fps"),
+            (format!(r#"{{ "version": 1, "keys": [{}, {}] }}"#, key("1"), key("1")), "/keys/1/t"),
+            (format!(r#"{{ "version": 1, "keys": [{}] }}"#, key("1e39")), "/keys/0"),
+            (r#"{ "version": 1, "keys": [ { "t": 0, "position": [0, 0, 5] } ] }"#.to_owned(), "look_at"),
+            (String::new(), "walk.json:1:0"),
+        ];
+        for (text, expected) in cases {
+            let message = parse(&text).expect_err(&text).to_string();
+            assert!(message.contains(expected) && !message.contains('\n'), "{message}");
+        }
+        assert!(matches!(CameraPath::load(Path::new("no/such.json")), Err(SceneError::Io { .. })));
+        assert!(matches!(CameraPath::load(&std::env::temp_dir()), Err(SceneError::Invalid { .. })));
+    }
+}
