@@ -24,7 +24,7 @@ pub struct Layer {
     context: egui::Context,
     state: egui_winit::State,
     /// The pointer was over the overlay at its last movement.
-    was_over: bool,
+    pointed_at: bool,
 }
 
 impl Layer {
@@ -40,7 +40,7 @@ impl Layer {
         let scale = Some(window.scale_factor() as f32);
         let state =
             egui_winit::State::new(context.clone(), egui::ViewportId::ROOT, window, scale, window.theme(), max_side);
-        Self { context, state, was_over: false }
+        Self { context, state, pointed_at: false }
     }
 
     /// Tells egui of a window event; true when the overlay must be drawn anew.
@@ -50,8 +50,8 @@ impl Layer {
             // Over the bare picture nothing lights up: drawing for every movement there would be for nothing.
             WindowEvent::CursorMoved { .. } => {
                 let over = self.is_under_pointer();
-                let changed = over || self.was_over || self.context.egui_is_using_pointer();
-                self.was_over = over;
+                let changed = over || self.pointed_at || self.context.egui_is_using_pointer();
+                self.pointed_at = over;
                 repaint && changed
             }
             WindowEvent::RedrawRequested => false,
@@ -67,7 +67,7 @@ impl Layer {
             }
         });
         self.state.egui_input_mut().events.push(egui::Event::PointerGone);
-        self.was_over = false;
+        self.pointed_at = false;
     }
 
     /// Whether the pointer is over the overlay, asked of where it really is: egui's own answer is one pass old.
@@ -84,14 +84,19 @@ impl Layer {
             .is_some_and(|layer| layer.order != egui::Order::Background)
     }
 
+    /// Whether the overlay is being used with the pointer.
+    pub fn is_pointed_at(&self) -> bool {
+        self.pointed_at
+    }
+
     /// Whether a click now is the overlay's: on it, or anywhere while a menu waits to be closed.
     pub fn takes_click(&self) -> bool {
         self.is_under_pointer() || egui::Popup::is_any_open(&self.context)
     }
 
-    /// Whether text is being typed.
-    pub fn wants_keyboard(&self) -> bool {
-        self.context.egui_wants_keyboard_input()
+    /// Whether keys are the overlay's: text is being typed, or a menu is open.
+    pub fn takes_keys(&self) -> bool {
+        self.context.egui_wants_keyboard_input() || egui::Popup::is_any_open(&self.context)
     }
 
     /// Runs the overlay at the surface's `size`. `None` where the window is too small for one.

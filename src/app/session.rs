@@ -21,7 +21,6 @@ use std::time::{Duration, Instant};
 use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
-use winit::keyboard::{KeyCode, PhysicalKey};
 use winit::window::{CursorGrabMode, Window};
 
 /// Between two steps of the walker: finer than any display, so that a frame starts from a fresh place.
@@ -175,36 +174,37 @@ impl Session {
 
     /// True to close the window.
     fn on_key(&mut self, now: Instant, key: &KeyEvent, is_synthetic: bool, event: &WindowEvent) -> bool {
-        let typing = self.layer.wants_keyboard() && !self.capture.is_active();
         self.step(now);
+        let of_overlay = self.layer.takes_keys() && !self.capture.is_active();
         let command = match key.state {
             ElementState::Released => {
                 self.keys.release(key.physical_key);
+                // Whoever saw a key go down should see it come up; that alone changes no looks.
+                self.layer.on_event(&self.window, event);
                 None
             }
             // A press made up at a change of focus is none.
             ElementState::Pressed if is_synthetic => None,
             ElementState::Pressed => self.keys.press(key.physical_key, key.repeat),
         };
-        if typing {
-            // Letters belong to the text; of our keys only the chords go on.
+        if command == Some(Command::Quit) {
+            return true;
+        }
+        if of_overlay && key.state.is_pressed() {
             self.keys.forget_holds();
+            if self.layer.on_event(&self.window, event) {
+                self.repaint(now);
+            }
+            return false;
         }
         match command {
-            Some(Command::Quit) => return true,
-            Some(_) if typing => {}
             Some(Command::ReleasePointer) => self.capture.release(&WindowHost(&self.window)),
-            Some(Command::TogglePanel) => self.shown = Shown { overlay: true, panel: !self.shown.panel },
+            Some(Command::TogglePanel) => self.shown = self.shown.with_panel_toggled(),
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
             Some(Command::Home) => self.walker.go_home(),
-            None => {}
+            Some(Command::Quit) | None => return false,
         }
-        // Tab opens the panel here; egui would walk through its widgets.
-        let is_tab = key.physical_key == PhysicalKey::Code(KeyCode::Tab);
-        let seen = !self.capture.is_active() && !is_tab && self.layer.on_event(&self.window, event);
-        if command.is_some() || (seen && typing) {
-            self.repaint(now);
-        }
+        self.repaint(now);
         false
     }
 
@@ -337,7 +337,9 @@ impl Session {
         let Some(painting) = painting else { return };
         self.presenter.set_overlay(&self.gpu, &painting.job, painting.textures);
         if let Some(delay) = painting.again {
-            self.figures.demand(now + delay, self.rates.display);
+            // What egui wants redrawn by itself, such as a column that grew, is urgent only to someone pointing there.
+            let interval = if self.layer.is_pointed_at() { self.rates.display } else { self.rates.figures };
+            self.figures.demand(now + delay, interval);
         }
         if shown.overlay && !resting {
             // The last frame may have been shown: look again, to say so.
@@ -362,7 +364,7 @@ impl Session {
             Change::Fov(fov) => self.walker.set_fov(fov),
             Change::Sensitivity(sensitivity) => self.walker.sensitivity = sensitivity,
             Change::InvertLook(invert) => self.walker.invert_look = invert,
-            Change::TogglePanel => self.shown.panel = !self.shown.panel,
+            Change::TogglePanel => self.shown = self.shown.with_panel_toggled(),
         }
     }
 
