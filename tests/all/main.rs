@@ -2,9 +2,13 @@
 
 mod blit;
 mod cli;
+mod exactness;
 mod imports;
 mod overlay;
+mod picture_bits;
+mod random;
 mod scene_errors;
 mod scene_files;
 mod scene_loading;
+mod stress;
 mod temporary;
