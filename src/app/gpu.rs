@@ -154,9 +154,14 @@ impl Gpu {
         }
     }
 
-    /// Submits what was drawn and shows it.
-    pub fn present(&self, encoder: wgpu::CommandEncoder, texture: wgpu::SurfaceTexture) {
-        self.queue.submit([encoder.finish()]);
+    /// Whether the surface's textures can be written to without drawing.
+    pub fn can_copy_to_surface(&self) -> bool {
+        self.config.usage.contains(wgpu::TextureUsages::COPY_DST)
+    }
+
+    /// Submits what was drawn or written, and shows it.
+    pub fn present(&self, commands: Option<wgpu::CommandBuffer>, texture: wgpu::SurfaceTexture) {
+        self.queue.submit(commands);
         self.window.pre_present_notify();
         self.queue.present(texture);
     }
@@ -172,7 +177,7 @@ fn configuration(capabilities: &wgpu::SurfaceCapabilities) -> Option<wgpu::Surfa
     let modes = [wgpu::PresentMode::Mailbox, wgpu::PresentMode::Fifo];
     let present_mode = modes.into_iter().find(|mode| capabilities.present_modes.contains(mode))?;
     Some(wgpu::SurfaceConfiguration {
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | (capabilities.usages & wgpu::TextureUsages::COPY_DST),
         format,
         color_space: wgpu::SurfaceColorSpace::Auto,
         width: 0,

@@ -6,11 +6,11 @@
 //!
 //! Architecture invariant: with nothing moved and nothing changed, nothing is traced, drawn or woken up for.
 
-pub mod blit;
 pub mod error;
 pub mod history;
 pub mod input;
 pub mod overlay;
+pub mod present;
 pub mod walker;
 
 mod capture;
@@ -24,6 +24,7 @@ mod tracer;
 mod viewer;
 
 pub use error::AppError;
+pub use present::Present;
 
 use crate::scene::{Camera, Scene};
 use crate::settings::Settings;
@@ -40,6 +41,8 @@ pub struct AppOptions {
     pub settings: Settings,
     /// Size of the window's inside in physical pixels.
     pub size: (u32, u32),
+    /// How frames reach the window.
+    pub present: Present,
 }
 
 /// Where things stood when the user closed the window.

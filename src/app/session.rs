@@ -1,6 +1,5 @@
 //! One open window: who gets which event, when to trace, when to draw.
 
-use super::blit::Blit;
 use super::capture::{Capture, PointerHost};
 use super::error::AppError;
 use super::gpu::{Gpu, Target};
@@ -9,6 +8,7 @@ use super::input::{Command, Keys};
 use super::layer::Layer;
 use super::overlay::{self, Change, Shown, View};
 use super::pacing::{Limiter, Rates};
+use super::present::{Present, Presenter};
 use super::tracer::{Job, TracedFrame, Tracer, Word};
 use super::walker::{self, Walker};
 use super::{AppExit, AppOptions};
@@ -21,7 +21,6 @@ use std::time::{Duration, Instant};
 use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
-use winit::keyboard::{KeyCode, PhysicalKey};
 use winit::window::{CursorGrabMode, Window};
 
 /// Between two steps of the walker: finer than any display, so that a frame starts from a fresh place.
@@ -39,7 +38,8 @@ const PIXELS_PER_NOTCH: f64 = 40.0;
 pub struct Session {
     tracer: Tracer,
     layer: Layer,
-    blit: Blit,
+    presenter: Presenter,
+    present: Present,
     gpu: Gpu,
     window: Arc<Window>,
     display: OwnedDisplayHandle,
@@ -86,7 +86,8 @@ impl Session {
         let mut session = Self {
             tracer: Tracer::start(options.scene.clone(), rates.display, word)?,
             layer: Layer::new(&gpu, &window),
-            blit: Blit::new(&gpu.device, gpu.format()),
+            presenter: Presenter::new(&gpu, options.present),
+            present: options.present,
             gpu,
             window,
             display,
@@ -173,36 +174,37 @@ impl Session {
 
     /// True to close the window.
     fn on_key(&mut self, now: Instant, key: &KeyEvent, is_synthetic: bool, event: &WindowEvent) -> bool {
-        let typing = self.layer.wants_keyboard() && !self.capture.is_active();
         self.step(now);
+        let of_overlay = self.layer.takes_keys() && !self.capture.is_active();
         let command = match key.state {
             ElementState::Released => {
                 self.keys.release(key.physical_key);
+                // Whoever saw a key go down should see it come up; that alone changes no looks.
+                self.layer.on_event(&self.window, event);
                 None
             }
             // A press made up at a change of focus is none.
             ElementState::Pressed if is_synthetic => None,
             ElementState::Pressed => self.keys.press(key.physical_key, key.repeat),
         };
-        if typing {
-            // Letters belong to the text; of our keys only the chords go on.
+        if command == Some(Command::Quit) {
+            return true;
+        }
+        if of_overlay && key.state.is_pressed() {
             self.keys.forget_holds();
+            if self.layer.on_event(&self.window, event) {
+                self.repaint(now);
+            }
+            return false;
         }
         match command {
-            Some(Command::Quit) => return true,
-            Some(_) if typing => {}
             Some(Command::ReleasePointer) => self.capture.release(&WindowHost(&self.window)),
-            Some(Command::TogglePanel) => self.shown = Shown { overlay: true, panel: !self.shown.panel },
+            Some(Command::TogglePanel) => self.shown = self.shown.with_panel_toggled(),
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
             Some(Command::Home) => self.walker.go_home(),
-            None => {}
+            Some(Command::Quit) | None => return false,
         }
-        // Tab opens the panel here; egui would walk through its widgets.
-        let is_tab = key.physical_key == PhysicalKey::Code(KeyCode::Tab);
-        let seen = !self.capture.is_active() && !is_tab && self.layer.on_event(&self.window, event);
-        if command.is_some() || (seen && typing) {
-            self.repaint(now);
-        }
+        self.repaint(now);
         false
     }
 
@@ -291,20 +293,17 @@ impl Session {
 
     fn draw(&mut self, now: Instant) -> Result<(), AppError> {
         self.redraw_requested = false;
-        if let Some(TracedFrame { film, .. }) = self.fresh.take() {
-            self.blit.upload(&self.gpu.device, &self.gpu.queue, film.width(), film.height(), film.rgba());
-            self.tracer.recycle(film);
+        if let Some(TracedFrame { film, .. }) = self.fresh.take()
+            && let Some(shown) = self.presenter.set_frame(&self.gpu, film)
+        {
+            self.tracer.recycle(shown);
         }
         if self.figures.is_due(now) {
             self.paint_overlay(now);
         }
         self.picture.met(now);
         match self.gpu.acquire() {
-            Target::Ready(target) => {
-                let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                self.blit.draw(&mut encoder, &target.texture, self.layer.picture(&self.gpu));
-                self.gpu.present(encoder, target);
-            }
+            Target::Ready(target) => self.presenter.show(&self.gpu, target),
             // Without a size there is nothing to ask for until the window comes back.
             Target::Later if self.gpu.size().0 == 0 || self.gpu.size().1 == 0 => {}
             Target::Later => self.picture.demand(now, ASK_AGAIN),
@@ -331,12 +330,16 @@ impl Session {
         let mut changes = Vec::new();
         let shown = self.shown;
         let pointer_is_free = !self.capture.is_active();
-        let again = self.layer.paint(&self.gpu, &self.blit, &self.window, pointer_is_free, |ui| {
+        let painting = self.layer.run(self.gpu.size(), &self.window, pointer_is_free, |ui| {
             changes.extend(overlay::show(ui, &view, shown));
         });
         self.figures.met(now);
-        if let Some(delay) = again {
-            self.figures.demand(now + delay, self.rates.display);
+        let Some(painting) = painting else { return };
+        self.presenter.set_overlay(&self.gpu, &painting.job, painting.textures);
+        if let Some(delay) = painting.again {
+            // What egui wants redrawn by itself, such as a column that grew, is urgent only to someone pointing there.
+            let interval = if self.layer.is_pointed_at() { self.rates.display } else { self.rates.figures };
+            self.figures.demand(now + delay, interval);
         }
         if shown.overlay && !resting {
             // The last frame may have been shown: look again, to say so.
@@ -361,7 +364,7 @@ impl Session {
             Change::Fov(fov) => self.walker.set_fov(fov),
             Change::Sensitivity(sensitivity) => self.walker.sensitivity = sensitivity,
             Change::InvertLook(invert) => self.walker.invert_look = invert,
-            Change::TogglePanel => self.shown.panel = !self.shown.panel,
+            Change::TogglePanel => self.shown = self.shown.with_panel_toggled(),
         }
     }
 
@@ -371,7 +374,7 @@ impl Session {
             return Err(AppError::GraphicsLost(reason));
         }
         self.gpu = Gpu::new(&self.window, &self.display).map_err(AppError::GraphicsLost)?;
-        self.blit = Blit::new(&self.gpu.device, self.gpu.format());
+        self.presenter = Presenter::new(&self.gpu, self.present);
         self.layer = Layer::new(&self.gpu, &self.window);
         self.device_made = now;
         self.posted = None;

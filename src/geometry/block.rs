@@ -68,4 +68,3 @@ impl<const N: usize> Block<N> {
         K::bounds(&self.get(place))
     }
 }
-

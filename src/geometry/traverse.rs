@@ -6,8 +6,8 @@ use super::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_pri
 use super::visitor::Mask;
 use super::{Block, Geometry, Packet, PrimitiveIndex, PrimitiveKind, Visitor};
 use crate::math::V3;
-use fearless_simd::prelude::*;
 use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 use std::ops::Range;
 
 /// Sphere terms of one common origin, block by block, where the packets of a search share it.
@@ -62,13 +62,7 @@ impl<'a> Search<'a> {
 
     /// Shows `visitor` every hit that can matter to it.
     #[inline(always)]
-    pub fn traverse<S: Simd, V: Visitor<S>>(
-        &self,
-        simd: S,
-        packet: &Packet<S>,
-        stack: &mut Stack,
-        visitor: &mut V,
-    ) {
+    pub fn traverse<S: Simd, V: Visitor<S>>(&self, simd: S, packet: &Packet<S>, stack: &mut Stack, visitor: &mut V) {
         match &self.geometry.bvh {
             Some(bvh) if self.use_bvh => {
                 self.visit_all(simd, &[PrimitiveKind::Plane], packet, visitor);
@@ -84,13 +78,7 @@ impl<'a> Search<'a> {
 
     /// Tests every primitive of the given types.
     #[inline(always)]
-    fn visit_all<S: Simd, V: Visitor<S>>(
-        &self,
-        simd: S,
-        kinds: &[PrimitiveKind],
-        packet: &Packet<S>,
-        visitor: &mut V,
-    ) {
+    fn visit_all<S: Simd, V: Visitor<S>>(&self, simd: S, kinds: &[PrimitiveKind], packet: &Packet<S>, visitor: &mut V) {
         for &kind in kinds {
             for block in 0..self.geometry.blocks_of(kind) as u32 {
                 self.visit_leaf(simd, Leaf { kind, block }, packet, visitor);
@@ -256,11 +244,8 @@ impl Geometry {
         let origin = V3::splat(simd, origin);
         for (block, spheres) in terms.iter_mut().zip(&self.spheres) {
             let fields = spheres.fields.each_ref().map(|f| fearless_simd::f32x8::from_slice(simd, f));
-            let cached = if thesis {
-                Sphere::thesis_terms(&fields, origin)
-            } else {
-                Sphere::origin_terms(&fields, origin)
-            };
+            let cached =
+                if thesis { Sphere::thesis_terms(&fields, origin) } else { Sphere::origin_terms(&fields, origin) };
             for (field, value) in block.fields.iter_mut().zip(cached) {
                 value.store_slice(field);
             }

@@ -41,7 +41,7 @@ pub trait Visitor<S: Simd> {
 #[derive(Clone, Copy, Debug)]
 pub struct ClosestHit<S: Simd> {
     t_min: S::f32s,
-    /// Distance of the best hit so far, or the limit that it was made with.
+    /// Distance of the best hit so far, or the limit that it was made with where nothing was hit.
     pub t: S::f32s,
     /// The primitive that was hit, or [`NO_PRIMITIVE`].
     pub primitive: S::u32s,

@@ -1,8 +1,8 @@
 //! Powers by our own exponential and logarithm: the system's differ between machines.
 
 use super::Lanes;
-use fearless_simd::prelude::*;
 use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 
 /// 2^23: adding it to a small whole number leaves that number in the mantissa's bits, and back.
 const TWO_23: f32 = 8_388_608.0;

@@ -1,5 +1,6 @@
 //! What a scene holds, in numbers.
 
+use crate::geometry::PrimitiveKind;
 use crate::scene::texture::Texture;
 use crate::scene::{Material, Object, Scene};
 use serde::Serialize;
@@ -28,10 +29,10 @@ impl SceneCounts {
         let tables =
             scene.objects.capacity() * size_of::<Object>() + scene.materials.capacity() * size_of::<Material>();
         Self {
-            scene_bytes: (texels + tables) as u64,
-            triangles: 0,
-            spheres: 0,
-            primitives: 0,
+            scene_bytes: (scene.geometry.bytes() + texels + tables) as u64,
+            triangles: scene.geometry.count(PrimitiveKind::Triangle) as u64,
+            spheres: scene.geometry.count(PrimitiveKind::Sphere) as u64,
+            primitives: scene.geometry.len() as u64,
             lights: (scene.lights.len() + usize::from(scene.headlight)) as u64,
             objects: scene.objects.len() as u64,
         }

@@ -6,9 +6,7 @@
 use super::frame::Frame;
 use super::queue::MOST_LANES;
 use super::tables::{ROWS, Row};
-use crate::geometry::primitive::{
-    Cone, Disk, Kernel, Plane, Sphere, SurfacePoint, Triangle, for_each_primitive,
-};
+use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, SurfacePoint, Triangle, for_each_primitive};
 use crate::geometry::{Block, Geometry, NO_PRIMITIVE, Packet, PrimitiveKind, Slot};
 use crate::math::V3;
 use fearless_simd::Simd;

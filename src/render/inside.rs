@@ -37,7 +37,8 @@ fn holds(geometry: &Geometry, object: u32, body: &Object, point: Vec3) -> bool {
 fn leavings(geometry: &Geometry, primitive: usize, origin: DVec3, direction: DVec3) -> i32 {
     let slot = geometry.slots[primitive];
     let (block, place) = (slot.block as usize, usize::from(slot.place));
-    let vector = |fields: &[f32], at: usize| DVec3::new(fields[at].into(), fields[at + 1].into(), fields[at + 2].into());
+    let vector =
+        |fields: &[f32], at: usize| DVec3::new(fields[at].into(), fields[at + 1].into(), fields[at + 2].into());
     let side = |hit: bool, normal: DVec3| match (hit, direction.dot(normal) > 0.0) {
         (false, _) => 0,
         (true, true) => 1,

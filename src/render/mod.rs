@@ -8,6 +8,7 @@ pub mod film;
 mod frame;
 mod gather;
 mod inside;
+mod leave;
 mod media;
 pub mod plan;
 mod queue;

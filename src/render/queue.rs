@@ -2,8 +2,8 @@
 
 use crate::geometry::NO_PRIMITIVE;
 use crate::math::V3;
-use fearless_simd::prelude::*;
 use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 use glam::Vec3;
 
 /// The widest packet: queues keep this much room beyond their length, so that every packet is a full load.

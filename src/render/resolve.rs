@@ -60,11 +60,7 @@ static SRGB: LazyLock<SrgbTable> = LazyLock::new(|| {
         256 => f32::INFINITY,
         _ => {
             let encoded = (byte as f64 - 0.5) / 255.0;
-            let linear = if encoded <= 0.04045 {
-                encoded / 12.92
-            } else {
-                libm::pow((encoded + 0.055) / 1.055, 2.4)
-            };
+            let linear = if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) };
             linear as f32
         }
     });

@@ -1,6 +1,7 @@
 //! The rays that follow from a hit: mirrored, and refracted by Snell's law with exact Fresnel terms.
 
 use super::frame::Frame;
+use super::leave;
 use super::media::{Media, MediaList};
 use super::queue::RayQueue;
 use super::stats::RayCounts;
@@ -13,8 +14,10 @@ use glam::Vec3;
 pub struct Incident {
     pub direction: Vec3,
     pub position: Vec3,
-    /// From the position off the surface, to the side where the ray came from.
-    pub offset: Vec3,
+    /// Unit geometric normal on the side where the ray came from.
+    pub facing: Vec3,
+    /// How far off the surface rays start.
+    pub margin: f32,
     /// Unit shading normal on that side.
     pub normal: Vec3,
     /// The ray came from outside of the object.
@@ -57,7 +60,8 @@ pub(super) fn follow(
     let mirrored = incident.weight * split.reflected;
     if frame.plan.reflections && is_heavy(mirrored, frame.settings.min_weight) {
         let direction = normalize(incident.direction + incident.normal * (2.0 * cosine));
-        rays.push(incident.position + incident.offset, direction, mirrored, incident.sample, incident.media);
+        let start = leave::start_one(incident.position, incident.facing, incident.margin, direction);
+        rays.push(start, direction, mirrored, incident.sample, incident.media);
         counts.reflection += 1;
     }
     let passed = incident.weight * (split.refracted * incident.color);
@@ -67,7 +71,8 @@ pub(super) fn follow(
             (true, true) => media.enter(incident.media, incident.object),
             (true, false) => media.leave(incident.media, incident.object),
         };
-        rays.push(incident.position - incident.offset, split.inward, passed, incident.sample, inside);
+        let start = leave::start_one(incident.position, -incident.facing, incident.margin, split.inward);
+        rays.push(start, split.inward, passed, incident.sample, inside);
         counts.refraction += 1;
     }
 }
@@ -81,9 +86,8 @@ fn is_heavy(weight: Vec3, min_weight: f32) -> bool {
 /// Index of refraction on the side where the ray comes from, divided by that on the other side.
 fn relative_index(frame: &Frame<'_>, incident: &Incident, material: &Material, body: bool, media: &Media) -> f32 {
     let around = media.around(incident.media, incident.object);
-    let outside = around.map_or(1.0, |object| {
-        frame.scene.materials[frame.scene.objects[object as usize].material as usize].ior
-    });
+    let outside =
+        around.map_or(1.0, |object| frame.scene.materials[frame.scene.objects[object as usize].material as usize].ior);
     if incident.entering || !body { outside / material.ior } else { material.ior / outside }
 }
 

@@ -4,6 +4,7 @@
 
 use super::frame::Frame;
 use super::gather::{Hits, Materials, Surfaces, bits, surfaces};
+use super::leave;
 use super::queue::RayQueue;
 use super::secondary::{self, Incident};
 use super::tables::Row;
@@ -20,15 +21,14 @@ use glam::Vec3;
 /// Lane mask of native width.
 type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
 
-/// Rays leave a surface this far along its normal, as a share of the largest coordinate that made the hit point:
-/// sixteen units in the last place. The one such margin: every path takes it from here.
-const OFFSET: f32 = 1.0 / (1 << 19) as f32;
-
 /// A packet's surfaces seen from where its rays came.
 struct Lit<S: Simd> {
     active: Mask<S>,
-    /// Where shadow and mirror rays start: off the surface, on the viewer's side.
-    outside: V3<S::f32s>,
+    position: V3<S::f32s>,
+    /// Geometric normal on the viewer's side.
+    facing: V3<S::f32s>,
+    /// How far off the surface rays start.
+    margin: S::f32s,
     /// Shading normal on the viewer's side.
     normal: V3<S::f32s>,
     to_viewer: V3<S::f32s>,
@@ -99,7 +99,9 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
     let (color, emission) = materials.colors(simd, frame, &hits, &surfaces);
     let lit = Lit::<S> {
         active: Mask::<S>::from_bitmask(simd, hits.active),
-        outside: surfaces.point.position + view.offset,
+        position: surfaces.point.position,
+        facing: view.facing,
+        margin: leave::margin::<S>(surfaces.point.scale),
         normal: view.normal,
         to_viewer: -direction,
         weight: rays.weight.load(simd, at),
@@ -118,7 +120,9 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
             continue;
         };
         if frame.plan.shadows {
-            queue.push_lanes::<S>(reaching, lit.outside, to_light, distance, gain, samples);
+            let start = leave::start::<S>(lit.position, lit.facing, lit.margin, to_light);
+            let reach = leave::reach::<S>(distance, lit.margin);
+            queue.push_lanes::<S>(reaching, start, to_light, reach, gain, samples);
         } else {
             for lane in bits(reaching.to_bitmask()) {
                 add(pixels, samples[lane], gain.lane(lane));
@@ -133,7 +137,8 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
                 let incident = Incident {
                     direction: direction.lane(lane),
                     position: surfaces.point.position.lane(lane),
-                    offset: view.offset.lane(lane),
+                    facing: view.facing.lane(lane),
+                    margin: lit.margin[lane],
                     normal: view.normal.lane(lane),
                     entering: !view.from_behind.test(lane),
                     object: frame.scene.geometry.ids[hits.primitives[lane] as usize].object,
@@ -154,8 +159,8 @@ struct View<S: Simd> {
     from_behind: Mask<S>,
     /// Shading normal on the viewer's side.
     normal: V3<S::f32s>,
-    /// From the hit point off the surface, to the viewer's side.
-    offset: V3<S::f32s>,
+    /// Geometric normal on the viewer's side.
+    facing: V3<S::f32s>,
 }
 
 impl<S: Simd> View<S> {
@@ -164,11 +169,7 @@ impl<S: Simd> View<S> {
         let geometric = surfaces.point.normal;
         let from_behind = direction.dot(geometric).simd_gt(S::f32s::splat(simd, 0.0));
         let facing = |n: V3<S::f32s>| V3::select(from_behind, -n, n);
-        Self {
-            from_behind,
-            normal: facing(surfaces.shading_normal),
-            offset: facing(geometric).scale(surfaces.point.scale * OFFSET),
-        }
+        Self { from_behind, normal: facing(surfaces.shading_normal), facing: facing(geometric) }
     }
 }
 
@@ -194,7 +195,7 @@ fn light_gain<S: Simd>(
     let zero = S::f32s::splat(simd, 0.0);
     let (to_light, distance) = match light.kind {
         LightKind::Point { position } | LightKind::Spot { position, .. } => {
-            let to = V3::splat(simd, position) - lit.outside;
+            let to = V3::splat(simd, position) - lit.position;
             let distance = to.dot(to).sqrt();
             (V3::new(to.x / distance, to.y / distance, to.z / distance), distance)
         }
@@ -296,13 +297,7 @@ fn metallic_roughness<S: Simd>(
 
 /// glTF's KHR_lights_punctual: the square of a linear ramp between the cosines of the two half-angles.
 #[inline(always)]
-fn spot_share<S: Simd>(
-    simd: S,
-    to_light: V3<S::f32s>,
-    direction: Vec3,
-    cos_inner: f32,
-    cos_outer: f32,
-) -> S::f32s {
+fn spot_share<S: Simd>(simd: S, to_light: V3<S::f32s>, direction: Vec3, cos_inner: f32, cos_outer: f32) -> S::f32s {
     let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
     let cosine = V3::splat(simd, -direction).dot(to_light);
     let ramp = (cosine - cos_outer) / (cos_inner - cos_outer).max(1e-4);

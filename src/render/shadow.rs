@@ -5,9 +5,7 @@ use super::gather;
 use super::queue::ShadowQueue;
 use super::stats::CacheCounts;
 use super::tile::Worker;
-use crate::geometry::{
-    AnyHit, NO_PRIMITIVE, NextCrossing, Opaque, Packet, PrimitiveIndex, Search, Stack, Visitor,
-};
+use crate::geometry::{AnyHit, NO_PRIMITIVE, NextCrossing, Opaque, Packet, PrimitiveIndex, Search, Stack, Visitor};
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -42,12 +40,8 @@ fn resolve_light<S: Simd>(
             queue.pad();
             for at in (0..queue.len()).step_by(S::f32s::LEN) {
                 let lanes = (queue.len() - at).min(S::f32s::LEN);
-                let packet = Packet::new(
-                    simd,
-                    search.geometry,
-                    queue.origin.load(simd, at),
-                    queue.direction.load(simd, at),
-                );
+                let packet =
+                    Packet::new(simd, search.geometry, queue.origin.load(simd, at), queue.direction.load(simd, at));
                 let distance = S::f32s::from_slice(simd, &queue.distance[at..at + S::f32s::LEN]);
                 let mut visitor = AnyHit::new(simd, distance, opaque);
                 if frame.settings.shadow_cache {

@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use super::queue::RayQueue;
 use super::tile::Worker;
-use crate::geometry::{ClosestHit, Packet, Search, SphereTerms, Stack};
+use crate::geometry::{ClosestHit, NO_PRIMITIVE, Packet, Search, SphereTerms, Stack};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -39,14 +39,7 @@ fn eye_search<'a>(frame: &Frame<'a>) -> Search<'a> {
     Search { sphere_terms, ..Search::new(&frame.scene.geometry, frame.plan.tree) }
 }
 
-fn trace_queue<S: Simd>(
-    simd: S,
-    search: &Search<'_>,
-    t_min: f32,
-    t_max: f32,
-    rays: &mut RayQueue,
-    stack: &mut Stack,
-) {
+fn trace_queue<S: Simd>(simd: S, search: &Search<'_>, t_min: f32, t_max: f32, rays: &mut RayQueue, stack: &mut Stack) {
     simd.vectorize(
         #[inline(always)]
         || {
@@ -74,7 +67,9 @@ fn for_each_packet<S: Simd>(
         let packet = Packet::new(simd, search.geometry, rays.origin.load(simd, at), rays.direction.load(simd, at));
         let mut visitor = ClosestHit::new(simd, t_min, t_max);
         find(&packet, &mut visitor);
-        visitor.t.store_slice(&mut rays.t[at..at + S::f32s::LEN]);
+        let missed = visitor.primitive.simd_eq(S::u32s::splat(simd, NO_PRIMITIVE));
+        let t = missed.select(S::f32s::splat(simd, f32::INFINITY), visitor.t);
+        t.store_slice(&mut rays.t[at..at + S::f32s::LEN]);
         visitor.primitive.store_slice(&mut rays.primitive[at..at + S::f32s::LEN]);
     }
     // The last packet's spare lanes repeated the last ray, and found what it found.

@@ -3,8 +3,32 @@
 use super::format::{LoadOptions, load_embedded};
 use super::{Scene, SceneError};
 
+/// A file of `scenes/` under its name there.
+macro_rules! embed {
+    ($name:literal) => {
+        ($name, include_bytes!(concat!("../../scenes/", $name)))
+    };
+}
+
 /// The built-in scene's file and, after it, the textures it names. The one place to edit when they change.
-const FILES: &[(&str, &[u8])] = &[("base.json", include_bytes!("../../scenes/base.json"))];
+const FILES: &[(&str, &[u8])] = &[
+    embed!("gallery.json"),
+    embed!("textures/arcs.png"),
+    embed!("textures/birches.png"),
+    embed!("textures/circles.png"),
+    embed!("textures/julia.png"),
+    embed!("textures/marble_tiles.png"),
+    embed!("textures/night.png"),
+    embed!("textures/parquet.png"),
+    embed!("textures/paving.png"),
+    embed!("textures/plaster.png"),
+    embed!("textures/poppies.png"),
+    embed!("textures/rug.png"),
+    embed!("textures/squares.png"),
+    embed!("textures/sunset.png"),
+    embed!("textures/waves.png"),
+    embed!("textures/wood.png"),
+];
 
 /// Loads the built-in scene.
 ///

@@ -70,6 +70,8 @@ pub struct Scene {
     pub name: String,
     /// Unique per built scene: caches keyed by it never outlive it.
     pub generation: u64,
+    /// Milliseconds that sorting its shapes and building the tree took.
+    pub build_ms: f64,
     /// Shapes and the tree over them.
     pub geometry: Geometry,
     /// Leaf objects, depth first in file order; a hit's object index points here.

@@ -1,6 +1,6 @@
 //! The blit, drawn offscreen: what a frame holds is what the target gets.
 
-use raywalk::app::blit::{BYTES, Blit};
+use raywalk::app::present::blit::{BYTES, Blit};
 use wgpu::TextureFormat;
 
 /// Device and queue of any adapter. Without one the test is left out, except where that must not happen unnoticed.

@@ -62,6 +62,13 @@ impl Default for Shown {
     }
 }
 
+impl Shown {
+    /// With the panel where it was not seen, and without it where it was.
+    pub fn with_panel_toggled(self) -> Self {
+        Self { overlay: true, panel: !(self.overlay && self.panel) }
+    }
+}
+
 /// What the user asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {

@@ -7,8 +7,8 @@
 use super::{Kernel, SurfacePoint, largest};
 use crate::geometry::Aabb;
 use crate::math::{Lanes, V3};
-use fearless_simd::prelude::*;
 use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 use glam::Vec3;
 
 /// The cone kernel. Fields: middle of the axis x y z, unit axis x y z, half of the height, radius at the middle,
@@ -43,12 +43,7 @@ impl Kernel<9> for Cone {
     }
 
     #[inline(always)]
-    fn intersect<S: Simd, F: Lanes<S>>(
-        fields: &[F; 9],
-        origin: V3<F>,
-        direction: V3<F>,
-        t_min: F,
-    ) -> (F::Mask, F) {
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 9], origin: V3<F>, direction: V3<F>, t_min: F) -> (F::Mask, F) {
         let middle = V3::new(fields[0], fields[1], fields[2]);
         let axis = V3::new(fields[3], fields[4], fields[5]);
         let [half_height, radius, slope] = [fields[6], fields[7], fields[8]];

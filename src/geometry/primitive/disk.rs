@@ -25,12 +25,7 @@ impl Kernel<7> for Disk {
     }
 
     #[inline(always)]
-    fn intersect<S: Simd, F: Lanes<S>>(
-        fields: &[F; 7],
-        origin: V3<F>,
-        direction: V3<F>,
-        t_min: F,
-    ) -> (F::Mask, F) {
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 7], origin: V3<F>, direction: V3<F>, t_min: F) -> (F::Mask, F) {
         let to_center = V3::new(fields[0], fields[1], fields[2]) - origin;
         let normal = V3::new(fields[3], fields[4], fields[5]);
         let t = normal.dot(to_center) / normal.dot(direction);

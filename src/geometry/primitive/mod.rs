@@ -53,12 +53,7 @@ pub trait Kernel<const N: usize> {
 
     /// Distance to the first hit beyond `t_min` (exclusive) along the unit `direction`, where the mask is set.
     /// Elsewhere the distance is meaningless. Distances may come out infinite: callers compare with a finite limit.
-    fn intersect<S: Simd, F: Lanes<S>>(
-        fields: &[F; N],
-        origin: V3<F>,
-        direction: V3<F>,
-        t_min: F,
-    ) -> (F::Mask, F);
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; N], origin: V3<F>, direction: V3<F>, t_min: F) -> (F::Mask, F);
 
     /// The surface at distance `t`, for a ray that [`intersect`](Self::intersect) found to hit there.
     fn surface<S: Simd, F: Lanes<S>>(fields: &[F; N], origin: V3<F>, direction: V3<F>, t: F) -> SurfacePoint<F>;

@@ -24,12 +24,7 @@ impl Kernel<4> for Plane {
     }
 
     #[inline(always)]
-    fn intersect<S: Simd, F: Lanes<S>>(
-        fields: &[F; 4],
-        origin: V3<F>,
-        direction: V3<F>,
-        t_min: F,
-    ) -> (F::Mask, F) {
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 4], origin: V3<F>, direction: V3<F>, t_min: F) -> (F::Mask, F) {
         let normal = V3::new(fields[0], fields[1], fields[2]);
         let t = (fields[3] - normal.dot(origin)) / normal.dot(direction);
         (t.simd_gt(t_min), t)

@@ -6,8 +6,8 @@
 use super::{Kernel, SurfacePoint, largest};
 use crate::geometry::Aabb;
 use crate::math::{Lanes, V3};
-use fearless_simd::prelude::*;
 use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 use glam::Vec3;
 
 /// The sphere kernel. Fields: centre x y z, radius.
@@ -70,12 +70,7 @@ impl Kernel<4> for Sphere {
     }
 
     #[inline(always)]
-    fn intersect<S: Simd, F: Lanes<S>>(
-        fields: &[F; 4],
-        origin: V3<F>,
-        direction: V3<F>,
-        t_min: F,
-    ) -> (F::Mask, F) {
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 4], origin: V3<F>, direction: V3<F>, t_min: F) -> (F::Mask, F) {
         Self::intersect_terms(&Self::origin_terms(fields, origin), direction, t_min)
     }
 

@@ -75,12 +75,7 @@ impl Kernel<10> for Triangle {
     }
 
     #[inline(always)]
-    fn intersect<S: Simd, F: Lanes<S>>(
-        fields: &[F; 10],
-        origin: V3<F>,
-        direction: V3<F>,
-        t_min: F,
-    ) -> (F::Mask, F) {
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 10], origin: V3<F>, direction: V3<F>, t_min: F) -> (F::Mask, F) {
         let corners = Self::corners(fields);
         let [u, v, w] = Self::weights(&corners, origin, direction);
         // Compared with zero, not by sign bits: -0.0 on an edge is a hit.

@@ -41,11 +41,7 @@ fn shade_queue<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
     for at in 0..worker.rays.len() {
         let sample = worker.rays.sample[at] as usize;
         worker.color[sample] = [0.0; 3];
-        worker.seen[sample] = Seen {
-            primitive: worker.rays.primitive[at],
-            t: worker.rays.t[at],
-            normal: [0.0; 3],
-        };
+        worker.seen[sample] = Seen { primitive: worker.rays.primitive[at], t: worker.rays.t[at], normal: [0.0; 3] };
     }
     worker.shade_paths(simd, frame);
 }

@@ -37,7 +37,8 @@ impl Cell {
     fn split(&self) -> impl Iterator<Item = Cell> + use<> {
         let halves = |from: u16, to: u16| {
             let middle = from + (to - from) / 2;
-            let cuts = if to - from > 1 { [Some((from, middle)), Some((middle, to))] } else { [Some((from, to)), None] };
+            let cuts =
+                if to - from > 1 { [Some((from, middle)), Some((middle, to))] } else { [Some((from, to)), None] };
             cuts.into_iter().flatten()
         };
         let Cell { left, top, right, bottom } = *self;
@@ -142,7 +143,8 @@ fn fill_colors<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, cells: &mut Cel
             let matches = common_primitive(cell, &worker.seen).is_some()
                 && colors_match(cell, &worker.color, frame.settings.match_threshold);
             if matches {
-                worker.stats.pixels.interpolated += interpolate(cell, pass, &mut cells.done, (&mut worker.color, &mut worker.seen));
+                worker.stats.pixels.interpolated +=
+                    interpolate(cell, pass, &mut cells.done, (&mut worker.color, &mut worker.seen));
             } else {
                 Cells::split(&mut cells.next, cell);
             }

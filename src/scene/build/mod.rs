@@ -24,6 +24,7 @@ use image::ImageStore;
 use placement::Placement;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 /// Ambient light of a scene that has no lights.
 const HEADLIGHT_AMBIENT: Vec3 = Vec3::splat(0.1);
@@ -146,10 +147,14 @@ impl SceneBuilder {
             let camera = framing::frame(finite_bounds(&self.objects), &self.render);
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
         }
+        let start = Instant::now();
+        let geometry = Geometry::build(self.parts);
+        let build_ms = start.elapsed().as_secs_f64() * 1e3;
         Scene {
             name: self.name,
             generation: GENERATION.fetch_add(1, Ordering::Relaxed),
-            geometry: Geometry::build(self.parts),
+            geometry,
+            build_ms,
             objects: self.objects,
             materials: self.materials,
             textures: self.textures,

@@ -1,10 +1,9 @@
 //! The blit: the traced frame and the overlay, through `shaders/blit.wgsl` onto a target, in one render pass.
 
+use super::PixelRect;
+
 /// What both textures hold: sRGB-encoded bytes, passed on as they are.
 pub const BYTES: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-
-/// A part of the target in physical pixels: left, top, width, height.
-pub type PixelRect = [u32; 4];
 
 /// Pipelines and textures of the blit.
 #[derive(Debug)]
@@ -20,7 +19,7 @@ pub struct Blit {
 impl Blit {
     /// Pipelines for targets of `format`; sRGB formats are served too.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
-        let shader = device.create_shader_module(wgpu::include_wgsl!("../../shaders/blit.wgsl"));
+        let shader = device.create_shader_module(wgpu::include_wgsl!("../../../shaders/blit.wgsl"));
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("picture"),
             entries: &[

@@ -1,0 +1,134 @@
+//! Showing: the newest frame and the overlay over it, on the window's surface.
+//!
+//! Two ways. With a GPU, both are textures and `shaders/blit.wgsl` joins them ([`blit`], [`gpu_overlay`]). Where the
+//! adapter itself computes on the CPU, both are joined in memory and copied to the surface ([`direct`], [`raster`]):
+//! the same picture for a fraction of the time, which the tracer gets instead.
+
+pub mod blit;
+mod direct;
+mod gpu_overlay;
+pub mod raster;
+
+use super::gpu::Gpu;
+use crate::render::Film;
+use blit::Blit;
+use direct::Direct;
+use egui::ClippedPrimitive;
+use egui::epaint::Primitive;
+use gpu_overlay::GpuOverlay;
+
+/// A part of a picture in pixels: left, top, width, height.
+pub type PixelRect = [u32; 4];
+
+/// How frames reach the window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Present {
+    /// Directly on a software adapter, by the blit else.
+    #[default]
+    Auto,
+    /// Through `shaders/blit.wgsl`.
+    Blit,
+    /// Copied to the surface, where it can be copied to.
+    Direct,
+}
+
+/// An overlay that is ready to be painted.
+#[derive(Clone, Debug)]
+pub struct PaintJob {
+    /// Triangles in points, with their clip rectangles.
+    pub primitives: Vec<ClippedPrimitive>,
+    /// Size of the picture in pixels.
+    pub size: [u32; 2],
+    /// Pixels in a point.
+    pub pixels_per_point: f32,
+}
+
+impl PaintJob {
+    /// The least rectangle of pixels that holds everything painted.
+    pub fn used_pixels(&self) -> Option<PixelRect> {
+        let mut used = egui::Rect::NOTHING;
+        for job in &self.primitives {
+            if let Primitive::Mesh(mesh) = &job.primitive {
+                used = used.union(mesh.calc_bounds().intersect(job.clip_rect));
+            }
+        }
+        let rect = self.pixel_rect(used, f32::floor, f32::ceil);
+        (rect[2] > 0 && rect[3] > 0).then_some(rect)
+    }
+
+    /// A clip rectangle in pixels.
+    pub fn clip_pixels(&self, clip: egui::Rect) -> PixelRect {
+        self.pixel_rect(clip, f32::round, f32::round)
+    }
+
+    fn pixel_rect(&self, rect: egui::Rect, least: fn(f32) -> f32, end: fn(f32) -> f32) -> PixelRect {
+        let [width, height] = self.size;
+        let scaled = |points: f32| points * self.pixels_per_point;
+        let (left, top) = (least(scaled(rect.min.x)).max(0.0) as u32, least(scaled(rect.min.y)).max(0.0) as u32);
+        let (right, bottom) = (end(scaled(rect.max.x)).max(0.0) as u32, end(scaled(rect.max.y)).max(0.0) as u32);
+        let (left, top) = (left.min(width), top.min(height));
+        [left, top, right.clamp(left, width) - left, bottom.clamp(top, height) - top]
+    }
+}
+
+/// One of the two ways, set up.
+pub enum Presenter {
+    /// Textures joined by a shader.
+    Blit(Box<(Blit, GpuOverlay)>),
+    /// Memory joined by the CPU.
+    Direct(Direct),
+}
+
+impl Presenter {
+    /// Sets `present` up; what the surface cannot be copied to is blitted to.
+    pub fn new(gpu: &Gpu, present: Present) -> Self {
+        let direct = match present {
+            Present::Auto => gpu.is_software,
+            Present::Blit => false,
+            Present::Direct => true,
+        };
+        if direct && let Some(direct) = Direct::new(gpu) {
+            return Self::Direct(direct);
+        }
+        let blit = Blit::new(&gpu.device, gpu.format());
+        Self::Blit(Box::new((blit, GpuOverlay::new(gpu))))
+    }
+
+    /// Shows `film` from the next drawing on. Returns a film that is not needed any more.
+    pub fn set_frame(&mut self, gpu: &Gpu, film: Film) -> Option<Film> {
+        match self {
+            Self::Blit(both) => {
+                both.0.upload(&gpu.device, &gpu.queue, film.width(), film.height(), film.rgba());
+                Some(film)
+            }
+            Self::Direct(direct) => direct.set_frame(film),
+        }
+    }
+
+    /// Shows the overlay `job` from the next drawing on.
+    pub fn set_overlay(&mut self, gpu: &Gpu, job: &PaintJob, mut textures: egui::TexturesDelta) {
+        match self {
+            Self::Blit(both) => {
+                let (blit, overlay) = both.as_mut();
+                overlay.paint(gpu, blit, job, &mut textures);
+            }
+            Self::Direct(direct) => direct.set_overlay(job, &mut textures),
+        }
+    }
+
+    /// Draws and presents.
+    pub fn show(&mut self, gpu: &Gpu, target: wgpu::SurfaceTexture) {
+        match self {
+            Self::Blit(both) => {
+                let (blit, overlay) = both.as_ref();
+                let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                blit.draw(&mut encoder, &target.texture, overlay.picture(gpu.size()));
+                gpu.present(Some(encoder.finish()), target);
+            }
+            Self::Direct(direct) => {
+                direct.write(&gpu.queue, &target.texture);
+                gpu.present(None, target);
+            }
+        }
+    }
+}

@@ -1,0 +1,337 @@
+//! egui's triangles, rasterised on the CPU.
+//!
+//! Without a GPU, a software adapter would run egui's shaders at some hundred nanoseconds a pixel, in time that the
+//! tracer needs; a panel of this program takes it 30 ms, and this rasteriser one.
+
+use super::{PaintJob, PixelRect};
+use egui::epaint::{ImageDelta, Mesh, Primitive, TextureId, Vertex};
+use egui::{Color32, ColorImage, ImageData, Pos2, TexturesDelta};
+use std::collections::HashMap;
+
+/// A picture of premultiplied sRGB-encoded colours, and the textures that are painted with.
+#[derive(Debug, Default)]
+pub struct Raster {
+    width: usize,
+    height: usize,
+    pixels: Vec<Color32>,
+    used: Option<PixelRect>,
+    textures: HashMap<TextureId, ColorImage>,
+}
+
+impl Raster {
+    /// Paints `job` over nothing.
+    pub fn paint(&mut self, job: &PaintJob) {
+        let [width, height] = job.size.map(|side| side as usize);
+        if (self.width, self.height) == (width, height) {
+            self.erase();
+        } else {
+            (self.width, self.height) = (width, height);
+            self.pixels.clear();
+            self.pixels.resize(width * height, Color32::TRANSPARENT);
+        }
+        self.used = job.used_pixels();
+        for clipped in &job.primitives {
+            // Callbacks are for GPUs; the overlay makes none.
+            let Primitive::Mesh(mesh) = &clipped.primitive else { continue };
+            let Some(texture) = self.textures.get(&mesh.texture_id) else { continue };
+            let clip = job.clip_pixels(clipped.clip_rect);
+            let mut target = Target { pixels: &mut self.pixels, stride: width, clip };
+            target.mesh(mesh, texture, job.pixels_per_point);
+        }
+    }
+
+    /// Textures to be there before painting.
+    pub fn set_textures(&mut self, textures: &mut TexturesDelta) {
+        for (id, deltas) in textures.set.drain() {
+            for delta in deltas {
+                self.set_texture(id, delta);
+            }
+        }
+    }
+
+    /// Textures not needed after painting.
+    pub fn free_textures(&mut self, textures: &mut TexturesDelta) {
+        for id in textures.free.drain() {
+            self.textures.remove(&id);
+        }
+    }
+
+    /// The part that shows anything.
+    pub fn used(&self) -> Option<PixelRect> {
+        self.used
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.width as u32, self.height as u32]
+    }
+
+    /// A row of pixels.
+    pub fn row(&self, y: u32) -> &[Color32] {
+        &self.pixels[y as usize * self.width..][..self.width]
+    }
+
+    fn erase(&mut self) {
+        let Some([left, top, width, height]) = self.used.map(|rect| rect.map(|side| side as usize)) else { return };
+        for y in top..top + height {
+            self.pixels[y * self.width + left..][..width].fill(Color32::TRANSPARENT);
+        }
+    }
+
+    fn set_texture(&mut self, id: TextureId, delta: ImageDelta) {
+        let ImageData::Color(image) = delta.image;
+        let Some([left, top]) = delta.pos else {
+            self.textures.insert(id, (*image).clone());
+            return;
+        };
+        let Some(texture) = self.textures.get_mut(&id) else { return };
+        let [width, height] = image.size;
+        let [texture_width, texture_height] = texture.size;
+        if left + width > texture_width || top + height > texture_height {
+            return;
+        }
+        for y in 0..height {
+            let row = &mut texture.pixels[(top + y) * texture_width + left..][..width];
+            row.copy_from_slice(&image.pixels[y * width..][..width]);
+        }
+    }
+}
+
+/// Colour and texture coordinates at a place of a triangle: what is interpolated over it.
+#[derive(Clone, Copy)]
+struct Varying {
+    color: [f32; 4],
+    uv: [f32; 2],
+}
+
+impl Varying {
+    fn of(vertex: &Vertex, texture: &ColorImage) -> Self {
+        let uv = [vertex.uv.x * texture.size[0] as f32, vertex.uv.y * texture.size[1] as f32];
+        Self { color: vertex.color.to_array().map(f32::from), uv }
+    }
+
+    fn weighted(parts: [(f32, Self); 3]) -> Self {
+        let mut sum = Self { color: [0.0; 4], uv: [0.0; 2] };
+        for (weight, part) in parts {
+            (0..4).for_each(|i| sum.color[i] += weight * part.color[i]);
+            (0..2).for_each(|i| sum.uv[i] += weight * part.uv[i]);
+        }
+        sum
+    }
+}
+
+/// Pixels being painted, within a clip rectangle.
+struct Target<'a> {
+    pixels: &'a mut [Color32],
+    stride: usize,
+    clip: PixelRect,
+}
+
+impl Target<'_> {
+    fn mesh(&mut self, mesh: &Mesh, texture: &ColorImage, scale: f32) {
+        for corners in mesh.indices.chunks_exact(3) {
+            let corners = [corners[0], corners[1], corners[2]].map(|i| mesh.vertices.get(i as usize));
+            if let [Some(a), Some(b), Some(c)] = corners {
+                self.triangle([*a, *b, *c], texture, scale);
+            }
+        }
+    }
+
+    /// Fills the pixels whose centres lie inside; centres on a shared edge belong to one side only.
+    fn triangle(&mut self, vertices: [Vertex; 3], texture: &ColorImage, scale: f32) {
+        let [a, b, c] = vertices.map(|vertex| Pos2::new(vertex.pos.x * scale, vertex.pos.y * scale));
+        let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+        if !area.is_finite() || area == 0.0 {
+            return;
+        }
+        let [left, top, width, height] = self.clip;
+        let (first_row, last_row) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
+        let rows = columns(first_row, last_row, top, top + height);
+        let varyings = vertices.map(|vertex| Varying::of(&vertex, texture));
+        let flat = vertices.iter().all(|v| v.uv == vertices[0].uv && v.color == vertices[0].color);
+        let flat = flat.then(|| shade(varyings[0], texture));
+        let at = |x: f32, y: f32| {
+            let weight_b = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / area;
+            let weight_c = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / area;
+            let weights = [1.0 - weight_b - weight_c, weight_b, weight_c];
+            Varying::weighted([(weights[0], varyings[0]), (weights[1], varyings[1]), (weights[2], varyings[2])])
+        };
+        for row in rows {
+            let y = row as f32 + 0.5;
+            let (mut from, mut to) = (f32::INFINITY, f32::NEG_INFINITY);
+            for x in [(a, b), (b, c), (c, a)].into_iter().filter_map(|(p, q)| crossing(p, q, y)) {
+                (from, to) = (from.min(x), to.max(x));
+            }
+            let span = columns(from, to, left, left + width);
+            let pixels = &mut self.pixels[row as usize * self.stride..][span.start as usize..span.end as usize];
+            match flat {
+                Some(color) if color.a() == 255 => pixels.fill(color),
+                Some(color) => pixels.iter_mut().for_each(|pixel| *pixel = over(color, *pixel)),
+                None => {
+                    for (x, pixel) in span.zip(pixels) {
+                        *pixel = over(shade(at(x as f32 + 0.5, y), texture), *pixel);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Where the edge from `p` to `q` crosses the horizontal line at `y`. Taken from the upper end whichever way the edge
+/// runs, so that both triangles that share it agree to the bit.
+fn crossing(p: Pos2, q: Pos2, y: f32) -> Option<f32> {
+    let (upper, lower) = if p.y <= q.y { (p, q) } else { (q, p) };
+    let inside = upper.y <= y && y < lower.y;
+    inside.then(|| upper.x + (y - upper.y) * ((lower.x - upper.x) / (lower.y - upper.y)))
+}
+
+/// The pixels whose centres lie in `[from, to)`, within `[least, end)`.
+fn columns(from: f32, to: f32, least: u32, end: u32) -> std::ops::Range<u32> {
+    let first = ((from - 0.5).ceil().max(0.0) as u32).clamp(least, end);
+    let last = ((to - 0.5).ceil().max(0.0) as u32).clamp(first, end);
+    first..last
+}
+
+/// Colour times texel. Glyphs are drawn at the size they were rasterised in, so the nearest texel is the right one.
+fn shade(varying: Varying, texture: &ColorImage) -> Color32 {
+    let [width, height] = texture.size;
+    let nearest = |t: f32, size: usize| (t.max(0.0) as usize).min(size.saturating_sub(1));
+    let index = nearest(varying.uv[1], height) * width + nearest(varying.uv[0], width);
+    let texel = texture.pixels.get(index).copied().unwrap_or(Color32::WHITE).to_array();
+    let [r, g, b, a]: [u8; 4] = std::array::from_fn(|i| (varying.color[i] * f32::from(texel[i]) / 255.0 + 0.5) as u8);
+    Color32::from_rgba_premultiplied(r, g, b, a)
+}
+
+/// Premultiplied `color` over `below`.
+pub fn over(color: Color32, below: Color32) -> Color32 {
+    let through = 255 - u32::from(color.a());
+    let (color, below) = (color.to_array(), below.to_array());
+    let [r, g, b, a]: [u8; 4] = std::array::from_fn(|i| {
+        // Exact rounding of a division by 255.
+        let product = u32::from(below[i]) * through + 128;
+        color[i].saturating_add(((product + (product >> 8)) >> 8) as u8)
+    });
+    Color32::from_rgba_premultiplied(r, g, b, a)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::epaint::{ClippedPrimitive, textures::TextureOptions};
+    use egui::{Rect, pos2};
+
+    const FONT: TextureId = TextureId::Managed(0);
+
+    /// A painter whose texture is white in the corner and has one pixel of half a red one.
+    fn raster() -> Raster {
+        let mut image = ColorImage::filled([4, 4], Color32::WHITE);
+        image.pixels[5] = Color32::from_rgba_premultiplied(128, 0, 0, 128);
+        let mut textures = TexturesDelta::default();
+        textures.push(FONT, ImageDelta::full(image, TextureOptions::LINEAR));
+        let mut raster = Raster::default();
+        raster.set_textures(&mut textures);
+        raster
+    }
+
+    fn job(meshes: Vec<Mesh>, clip: Rect) -> PaintJob {
+        let primitives =
+            meshes.into_iter().map(|mesh| ClippedPrimitive { clip_rect: clip, primitive: Primitive::Mesh(mesh) });
+        PaintJob { primitives: primitives.collect(), size: [16, 12], pixels_per_point: 1.0 }
+    }
+
+    fn rect(left: f32, top: f32, right: f32, bottom: f32) -> Rect {
+        Rect::from_min_max(pos2(left, top), pos2(right, bottom))
+    }
+
+    fn colored(rect: Rect, color: Color32) -> Mesh {
+        let mut mesh = Mesh::with_texture(FONT);
+        mesh.add_colored_rect(rect, color);
+        mesh
+    }
+
+    #[test]
+    fn a_rectangle_covers_its_pixels_once_within_the_clip() {
+        let mut raster = raster();
+        let veil = Color32::from_rgba_premultiplied(60, 40, 20, 128);
+        raster.paint(&job(vec![colored(rect(2.0, 1.0, 20.0, 9.0), veil)], rect(0.0, 0.0, 14.0, 8.0)));
+        for y in 0..12 {
+            for x in 0..16 {
+                let inside = (2..14).contains(&x) && (1..8).contains(&y);
+                let expected = if inside { veil } else { Color32::TRANSPARENT };
+                assert_eq!(raster.row(y)[x as usize], expected, "({x}, {y})");
+            }
+        }
+        assert_eq!(raster.used(), Some([2, 1, 12, 7]));
+        raster.paint(&job(Vec::new(), Rect::EVERYTHING));
+        assert!((0..12).all(|y| raster.row(y).iter().all(|pixel| *pixel == Color32::TRANSPARENT)), "erased");
+        assert_eq!(raster.used(), None);
+    }
+
+    #[test]
+    fn a_fan_of_slanted_triangles_leaves_no_gap_and_no_overlap() {
+        let mut mesh = Mesh::with_texture(FONT);
+        let veil = Color32::from_rgba_premultiplied(10, 10, 10, 100);
+        for (x, y) in [(7.3, 5.1), (1.0, 1.0), (15.0, 1.0), (15.0, 11.0), (1.0, 11.0)] {
+            mesh.colored_vertex(pos2(x, y), veil);
+        }
+        for i in 1..5 {
+            mesh.add_triangle(0, i, i % 4 + 1);
+        }
+        let mut raster = raster();
+        raster.paint(&job(vec![mesh], Rect::EVERYTHING));
+        for y in 1..11 {
+            assert!(raster.row(y)[1..15].iter().all(|pixel| *pixel == veil), "row {y}");
+        }
+    }
+
+    #[test]
+    fn texels_arrive_where_they_belong_and_are_laid_over() {
+        let mut raster = raster();
+        let mut glyph = Mesh::with_texture(FONT);
+        glyph.add_rect_with_uv(rect(3.0, 3.0, 7.0, 7.0), rect(0.0, 0.0, 1.0, 1.0), Color32::WHITE);
+        let below = colored(rect(0.0, 0.0, 16.0, 12.0), Color32::from_rgb(0, 200, 0));
+        raster.paint(&job(vec![below, glyph], Rect::EVERYTHING));
+        assert_eq!(raster.row(4)[4], Color32::from_rgb(128, 100, 0));
+        assert_eq!(raster.row(3)[3], Color32::WHITE);
+        assert_eq!(raster.row(7)[3], Color32::from_rgb(0, 200, 0));
+    }
+
+    #[test]
+    fn colours_run_between_corners() {
+        let mut mesh = Mesh::with_texture(FONT);
+        for (x, level) in [(0.0, 0), (16.0, 255), (0.0, 0), (16.0, 255)] {
+            let y = if mesh.vertices.len() < 2 { 0.0 } else { 12.0 };
+            mesh.colored_vertex(pos2(x, y), Color32::from_gray(level));
+        }
+        mesh.add_triangle(0, 1, 2);
+        mesh.add_triangle(2, 1, 3);
+        let mut raster = raster();
+        raster.paint(&job(vec![mesh], Rect::EVERYTHING));
+        for x in 0..16 {
+            let expected = 255.0 * (x as f32 + 0.5) / 16.0;
+            assert!((f32::from(raster.row(6)[x].r()) - expected).abs() <= 1.0, "{x}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_painted_is_left_out() {
+        let mut raster = raster();
+        let mut broken = colored(rect(f32::NAN, 0.0, f32::INFINITY, 9.0), Color32::RED);
+        broken.indices.extend([0, 1, 99]);
+        let mut unknown = colored(rect(0.0, 0.0, 9.0, 9.0), Color32::RED);
+        unknown.texture_id = TextureId::User(7);
+        raster.paint(&job(vec![broken, unknown], Rect::EVERYTHING));
+        assert!((0..12).all(|y| raster.row(y).iter().all(|pixel| *pixel == Color32::TRANSPARENT)));
+    }
+
+    #[test]
+    fn laying_over_rounds_exactly() {
+        for below in 0..=255_u8 {
+            for alpha in 0..=255_u8 {
+                let expected = (f64::from(below) * f64::from(255 - alpha) / 255.0).round() as u8;
+                let seen = over(Color32::from_rgba_premultiplied(0, 0, 0, alpha), Color32::from_gray(below));
+                assert_eq!(seen.r(), expected, "{below} under {alpha}");
+            }
+        }
+    }
+}
