@@ -23,7 +23,6 @@
 //!                                          │ tiles: visibility ─► shade ─► shadows ─► secondary rays, level by level
 //!                                          └─► FrameStats ─► overlay, --stats
 //! ```
-#![warn(missing_docs)]
 
 pub mod settings;
 

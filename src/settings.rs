@@ -71,6 +71,17 @@ pub enum ToneMap {
     Neutral,
 }
 
+/// How the window shows a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Present {
+    /// Directly on a software adapter, by the blit else.
+    Auto,
+    /// Through `shaders/blit.wgsl`.
+    Blit,
+    /// Copied to the surface, where it can be copied to.
+    Direct,
+}
+
 /// All settings of one frame. Plain data: `Settings::default()` is the preset `exact`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -108,6 +119,8 @@ pub struct Settings {
     pub tone_map: ToneMap,
     /// Exposure in stops, applied before the tone curve.
     pub exposure: f32,
+    /// How the window shows frames; nothing else looks at it.
+    pub present: Present,
 }
 
 impl Default for Settings {
@@ -137,6 +150,7 @@ impl Settings {
             min_weight: 0.0,
             tone_map: ToneMap::None,
             exposure: 0.0,
+            present: Present::Auto,
         }
     }
 
@@ -371,6 +385,8 @@ pub const ROWS: &[Row] = &[
         get: |s| s.exposure.to_string(),
         set: |s, text| number(text, -20.0, 20.0).map(|v| s.exposure = v as f32),
     },
+    choice_row!("present", "how the window shows a frame: auto copies it directly where the adapter is software, else blits",
+        present, ["auto" => Present::Auto, same; "blit" => Present::Blit, same; "direct" => Present::Direct, same]),
 ];
 
 /// A number, or a fraction `a/b`, within `[min, max]`.

@@ -24,7 +24,6 @@ mod tracer;
 mod viewer;
 
 pub use error::AppError;
-pub use present::Present;
 
 use crate::scene::{Camera, Scene};
 use crate::settings::Settings;
@@ -41,8 +40,6 @@ pub struct AppOptions {
     pub settings: Settings,
     /// Size of the window's inside in physical pixels.
     pub size: (u32, u32),
-    /// How frames reach the window.
-    pub present: Present,
 }
 
 /// Where things stood when the user closed the window.

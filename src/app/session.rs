@@ -8,7 +8,7 @@ use super::input::{Command, Keys};
 use super::layer::Layer;
 use super::overlay::{self, Change, Shown, View};
 use super::pacing::{Limiter, Rates};
-use super::present::{Present, Presenter};
+use super::present::Presenter;
 use super::tracer::{Job, TracedFrame, Tracer, Word};
 use super::walker::{self, Walker};
 use super::{AppExit, AppOptions};
@@ -39,7 +39,6 @@ pub struct Session {
     tracer: Tracer,
     layer: Layer,
     presenter: Presenter,
-    present: Present,
     gpu: Gpu,
     window: Arc<Window>,
     display: OwnedDisplayHandle,
@@ -87,8 +86,7 @@ impl Session {
         let mut session = Self {
             tracer: Tracer::start(options.scene.clone(), rates.display, word)?,
             layer: Layer::new(&gpu, &window),
-            presenter: Presenter::new(&gpu, options.present),
-            present: options.present,
+            presenter: Presenter::new(&gpu, options.settings.present),
             gpu,
             window,
             display,
@@ -354,7 +352,13 @@ impl Session {
 
     fn apply(&mut self, change: Change) {
         match change {
-            Change::Settings(settings) => self.settings = settings,
+            Change::Settings(settings) => {
+                let shown_otherwise = settings.present != self.settings.present;
+                self.settings = settings;
+                if shown_otherwise {
+                    self.replace_presenter(Instant::now());
+                }
+            }
             Change::Camera(index) => {
                 if let Some(named) = self.scene.cameras.get(index) {
                     self.walker.go_to(named.camera);
@@ -375,12 +379,17 @@ impl Session {
             return Err(AppError::GraphicsLost(reason));
         }
         self.gpu = Gpu::new(&self.window, &self.display).map_err(AppError::GraphicsLost)?;
-        self.presenter = Presenter::new(&self.gpu, self.present);
-        self.layer = Layer::new(&self.gpu, &self.window);
         self.device_made = now;
+        self.replace_presenter(now);
+        Ok(())
+    }
+
+    /// Starts showing frames in another way, or on another device.
+    fn replace_presenter(&mut self, now: Instant) {
+        self.presenter = Presenter::new(&self.gpu, self.settings.present);
+        self.layer = Layer::new(&self.gpu, &self.window);
         self.posted = None;
         self.repaint(now);
-        Ok(())
     }
 }
 

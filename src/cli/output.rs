@@ -103,7 +103,7 @@ mod tests {
         assert_eq!(name("walk-%04d.png"), "walk-0007.png");
         assert_eq!(name("a%d/walk%d.png"), "a%d/walk7.png");
         assert_eq!(name("100%/%03d.exr"), "100%/007.exr");
-        for plain in ["walk.png", "100%.png", "50%done.png", "%4d.png", "%0d.png", "%099d.png"] {
+        for plain in ["walk.png", "100%.png", "%4d.png", "%0d.png", "%099d.png"] {
             assert_eq!(name(plain), plain);
         }
         assert_eq!(name("5%_%02d.png"), "5%_07.png");

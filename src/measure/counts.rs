@@ -25,15 +25,14 @@ pub struct SceneCounts {
 impl SceneCounts {
     /// Counts `scene`.
     pub fn of(scene: &Scene) -> Self {
-        let geometry = &scene.geometry;
         let texels: usize = scene.textures.iter().map(texture_bytes).sum();
         let tables =
             scene.objects.capacity() * size_of::<Object>() + scene.materials.capacity() * size_of::<Material>();
         Self {
-            scene_bytes: (texels + tables + geometry.bytes()) as u64,
-            triangles: geometry.count(PrimitiveKind::Triangle) as u64,
-            spheres: geometry.count(PrimitiveKind::Sphere) as u64,
-            primitives: geometry.len() as u64,
+            scene_bytes: (scene.geometry.bytes() + texels + tables) as u64,
+            triangles: scene.geometry.count(PrimitiveKind::Triangle) as u64,
+            spheres: scene.geometry.count(PrimitiveKind::Sphere) as u64,
+            primitives: scene.geometry.len() as u64,
             lights: (scene.lights.len() + usize::from(scene.headlight)) as u64,
             objects: scene.objects.len() as u64,
         }

@@ -10,6 +10,8 @@ mod format;
 mod pending_file;
 mod ppm;
 mod read;
+#[cfg(test)]
+mod temporary;
 mod transfer;
 
 pub use eight_bit::EightBit;

@@ -105,33 +105,12 @@ fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::temporary::Folder;
     use super::*;
-
-    /// A folder of its own for each test, removed at the end.
-    struct Folder(PathBuf);
-
-    impl Folder {
-        fn new(name: &str) -> Self {
-            let path = std::env::temp_dir().join(format!("raywalk-{name}-{}", std::process::id()));
-            fs::create_dir_all(&path).expect("the temporary folder is writable");
-            Self(path)
-        }
-
-        fn names(&self) -> Vec<String> {
-            let entries = fs::read_dir(&self.0).expect("it exists");
-            entries.map(|e| e.expect("readable").file_name().to_string_lossy().into_owned()).collect()
-        }
-    }
-
-    impl Drop for Folder {
-        fn drop(&mut self) {
-            let _ = fs::remove_dir_all(&self.0);
-        }
-    }
 
     #[test]
     fn the_name_appears_only_with_the_whole_contents() {
-        let folder = Folder::new("commit");
+        let folder = Folder::new();
         let target = folder.0.join("a.png");
         let pending = PendingFile::create(&target).expect("writable");
         assert!(!target.exists());
@@ -142,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_failed_or_abandoned_file_leaves_the_old_one() {
-        let folder = Folder::new("abandon");
+        let folder = Folder::new();
         let target = folder.0.join("a.png");
         fs::write(&target, b"old").expect("writable");
         drop(PendingFile::create(&target).expect("writable"));
@@ -158,7 +137,7 @@ mod tests {
 
     #[test]
     fn places_that_cannot_be_written_are_refused_at_once() {
-        let folder = Folder::new("refuse");
+        let folder = Folder::new();
         for bad in [folder.0.join("missing/a.png"), folder.0.clone()] {
             let error = PendingFile::create(&bad).expect_err("not writable").to_string();
             assert!(error.contains("cannot write"), "{error}");
@@ -168,7 +147,7 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn a_link_stays_a_link_and_a_device_a_device() {
-        let folder = Folder::new("link");
+        let folder = Folder::new();
         let (real, link) = (folder.0.join("real.png"), folder.0.join("link.png"));
         fs::write(&real, b"old").expect("writable");
         std::os::unix::fs::symlink(&real, &link).expect("links work");

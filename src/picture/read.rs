@@ -129,43 +129,27 @@ fn read_exr(path: &Path) -> Result<Picture, PictureError> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::temporary::Folder;
     use super::*;
-    use std::path::PathBuf;
-
-    /// A file of its own for each test, removed at the end.
-    struct Temporary(PathBuf);
-
-    impl Temporary {
-        fn new(name: &str, bytes: &[u8]) -> Self {
-            let path = std::env::temp_dir().join(format!("raywalk-read-{}-{name}", std::process::id()));
-            fs::write(&path, bytes).expect("the temporary folder is writable");
-            Self(path)
-        }
-    }
-
-    impl Drop for Temporary {
-        fn drop(&mut self) {
-            let _ = fs::remove_file(&self.0);
-        }
-    }
 
     #[test]
     fn sixteen_bits_keep_their_precision() {
         let image = image::ImageBuffer::<image::Luma<u16>, _>::from_raw(2, 1, vec![1_u16, 65_535]).expect("two pixels");
         let mut bytes = std::io::Cursor::new(Vec::new());
         image.write_to(&mut bytes, image::ImageFormat::Png).expect("memory takes it");
-        let file = Temporary::new("deep.png", bytes.get_ref());
-        let picture = read(&file.0).expect("it is a picture");
+        let folder = Folder::new();
+        let picture = read(&folder.write("deep.png", bytes.get_ref())).expect("it is a picture");
         assert_eq!((picture.width, picture.height, picture.encoding), (2, 1, Encoding::Srgb));
         assert_eq!(picture.pixels, [[1.0 / 65_535.0; 3], [1.0; 3]]);
     }
 
     #[test]
     fn an_exr_is_linear_until_it_is_encoded() {
-        let file = Temporary::new("linear.exr", b"");
-        exr::prelude::write_rgb_file(&file.0, 2, 1, |x, _| if x == 0 { (-1.0_f32, 0.5, 7.0) } else { (0.0, 0.0, 1.0) })
+        let folder = Folder::new();
+        let file = folder.write("linear.exr", b"");
+        exr::prelude::write_rgb_file(&file, 2, 1, |x, _| if x == 0 { (-1.0_f32, 0.5, 7.0) } else { (0.0, 0.0, 1.0) })
             .expect("writable");
-        let picture = read(&file.0).expect("it is an EXR");
+        let picture = read(&file).expect("it is an EXR");
         assert_eq!(picture.encoding, Encoding::Linear);
         assert_eq!(picture.pixels[0], [-1.0, 0.5, 7.0]);
         let shown = picture.encoded_as(Encoding::Srgb);
@@ -175,14 +159,15 @@ mod tests {
 
     #[test]
     fn what_is_no_picture_is_told_in_one_line() {
+        let folder = Folder::new();
         let mut hostile = Vec::new();
         // A PNG that claims 65000 x 65000 pixels: signature, then an IHDR chunk.
         hostile.extend(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\xfd\xe8\0\0\xfd\xe8\x08\x02\0\0\0");
         hostile.extend([0; 4]);
         let not_a_number = {
-            let file = Temporary::new("nan.exr", b"");
-            exr::prelude::write_rgb_file(&file.0, 1, 1, |_, _| (f32::NAN, 0.0_f32, 0.0_f32)).expect("writable");
-            fs::read(&file.0).expect("there")
+            let file = folder.write("nan.exr", b"");
+            exr::prelude::write_rgb_file(&file, 1, 1, |_, _| (f32::NAN, 0.0_f32, 0.0_f32)).expect("writable");
+            fs::read(&file).expect("there")
         };
         let cases: [(&str, &[u8]); 6] = [
             ("empty.png", b""),
@@ -193,11 +178,10 @@ mod tests {
             ("nan.exr", &not_a_number),
         ];
         for (name, bytes) in cases {
-            let file = Temporary::new(name, bytes);
-            let message = read(&file.0).expect_err(name).to_string();
+            let message = read(&folder.write(name, bytes)).expect_err(name).to_string();
             assert!(message.contains(name) && !message.contains('\n'), "{message}");
         }
         assert!(read(Path::new("no/such/file.png")).expect_err("missing").to_string().contains("no/such/file.png"));
-        assert!(read(&std::env::temp_dir()).is_err());
+        assert!(read(&folder.0).is_err());
     }
 }

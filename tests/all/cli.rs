@@ -1,27 +1,27 @@
 //! The program as its users meet it: exit codes, files, and what is said where.
 
+use super::temporary::Folder;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A folder of its own for each test, in which the program runs; removed at the end.
-struct Bench(PathBuf);
+/// A folder in which the program runs.
+struct Bench(Folder);
 
 impl Bench {
     fn new() -> Self {
-        static NEXT: AtomicU32 = AtomicU32::new(0);
-        let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("raywalk-cli-{}-{number}", std::process::id()));
-        fs::create_dir_all(&path).expect("the temporary folder is writable");
-        Self(path)
+        Self(Folder::new())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
     }
 
     /// The program with `line` as its arguments, with no display.
     fn program(&self, line: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_raywalk"));
-        command.current_dir(&self.0).args(line.split_whitespace());
+        command.current_dir(self.0.path()).args(line.split_whitespace());
         for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
             command.env_remove(display);
         }
@@ -55,11 +55,11 @@ impl Bench {
     }
 
     fn write(&self, name: &str, contents: impl AsRef<[u8]>) {
-        fs::write(self.0.join(name), contents).expect("the folder is writable");
+        self.0.write(name, contents);
     }
 
     fn read(&self, name: &str) -> Vec<u8> {
-        fs::read(self.0.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+        fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
     fn json(&self, line: &str) -> Value {
@@ -68,7 +68,7 @@ impl Bench {
     }
 
     fn names(&self) -> Vec<String> {
-        let entries = fs::read_dir(&self.0).expect("it exists");
+        let entries = fs::read_dir(self.0.path()).expect("it exists");
         let mut names: Vec<_> =
             entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned()).collect();
         names.sort();
@@ -79,13 +79,7 @@ impl Bench {
     fn picture(&self, name: &str, (width, height): (u32, u32), color: [u8; 3], last: [u8; 3]) {
         let mut picture = image::RgbImage::from_pixel(width, height, image::Rgb(color));
         picture.put_pixel(width - 1, height - 1, image::Rgb(last));
-        picture.save(self.0.join(name)).expect("writable");
-    }
-}
-
-impl Drop for Bench {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
+        picture.save(self.path(name)).expect("writable");
     }
 }
 
@@ -202,7 +196,7 @@ fn every_format_is_written_whole_and_under_its_name_only() {
     assert_eq!(bench.names(), ["a.bmp", "a.exr", "a.jpg", "a.png", "a.ppm", "raw.ppm", "scene.json"]);
 
     // PNG and PPM hold the same picture, and the EXR is it before encoding.
-    let png = image::open(bench.0.join("a.png")).expect("a picture").to_rgb8();
+    let png = image::open(bench.path("a.png")).expect("a picture").to_rgb8();
     assert_eq!(png.into_raw(), values);
     let scores = bench.json("compare a.png a.exr --json");
     assert!(scores["max_abs"].as_f64().expect("a number") < 0.6 / 255.0, "{scores}");
@@ -213,7 +207,7 @@ fn planes_are_written_where_asked() {
     let bench = Bench::new();
     bench.write("scene.json", SCENE);
     bench.done("render scene.json --aov depth,normal,object,primitive -o a.exr");
-    let file = std::io::BufReader::new(fs::File::open(bench.0.join("a.exr")).expect("written"));
+    let file = std::io::BufReader::new(fs::File::open(bench.path("a.exr")).expect("written"));
     let meta = exr::prelude::MetaData::read_from_buffered(file, true).expect("an EXR");
     let names: Vec<_> = meta.headers[0].channels.list.iter().map(|channel| channel.name.to_string()).collect();
     assert_eq!(names, ["B", "G", "R", "depth", "normal.X", "normal.Y", "normal.Z", "object", "primitive"]);
@@ -234,7 +228,7 @@ fn a_path_makes_numbered_frames_and_a_still_view_one() {
     assert_eq!(bench.read("part-2.png"), bench.read("walk-0002.png"), "the same frames on every run");
     assert_eq!(bench.read("part-3.png"), bench.read("walk-0003.png"));
     assert_ne!(bench.read("part-2.png"), bench.read("part-3.png"));
-    assert!(!bench.0.join("part-4.png").exists());
+    assert!(!bench.path("part-4.png").exists());
 
     bench.done("render scene.json --frames 0..3 -o still.png");
     bench.done("render scene.json -o once.png");
@@ -401,7 +395,7 @@ fn compare_measures_and_shows_differences() {
     assert_eq!(scores["pixels_off"], 1);
     assert!(scores["flip"].as_f64().is_some_and(|flip| flip > 0.0));
 
-    let difference = image::open(bench.0.join("d.png")).expect("a picture").to_rgb8();
+    let difference = image::open(bench.path("d.png")).expect("a picture").to_rgb8();
     let (dark, bright) = (difference.get_pixel(0, 0), difference.get_pixel(19, 14));
     assert!(bright.0[0] > 200 && dark.0[0] < 80, "{dark:?} {bright:?}");
 
@@ -417,11 +411,11 @@ fn a_closed_pipe_is_no_failure() {
     let bench = Bench::new();
     bench.write("scene.json", SCENE);
     let line = format!("{} info scene.json | true", env!("CARGO_BIN_EXE_raywalk"));
-    let shell = Command::new("sh").args(["-c", &line]).current_dir(&bench.0).output().expect("a shell");
+    let shell = Command::new("sh").args(["-c", &line]).current_dir(bench.0.path()).output().expect("a shell");
     assert_eq!(text(&shell.stderr), "");
     if Path::new("/dev/full").exists() {
         let line = format!("{} info scene.json > /dev/full", env!("CARGO_BIN_EXE_raywalk"));
-        let shell = Command::new("sh").args(["-c", &line]).current_dir(&bench.0).output().expect("a shell");
+        let shell = Command::new("sh").args(["-c", &line]).current_dir(bench.0.path()).output().expect("a shell");
         assert_eq!(shell.status.code(), Some(1));
         assert!(text(&shell.stderr).starts_with("error: cannot write to standard output"));
     }

@@ -17,6 +17,7 @@ fn scene() -> Scene {
         name: "room".to_owned(),
         generation: 1,
         geometry: Geometry::build(Vec::new()),
+        build_ms: 0.0,
         objects: Vec::new(),
         materials: vec![Material::default_phong()],
         textures: Vec::new(),

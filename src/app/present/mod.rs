@@ -11,6 +11,7 @@ pub mod raster;
 
 use super::gpu::Gpu;
 use crate::render::Film;
+use crate::settings::Present;
 use blit::Blit;
 use direct::Direct;
 use egui::ClippedPrimitive;
@@ -19,18 +20,6 @@ use gpu_overlay::GpuOverlay;
 
 /// A part of a picture in pixels: left, top, width, height.
 pub type PixelRect = [u32; 4];
-
-/// How frames reach the window.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Present {
-    /// Directly on a software adapter, by the blit else.
-    #[default]
-    Auto,
-    /// Through `shaders/blit.wgsl`.
-    Blit,
-    /// Copied to the surface, where it can be copied to.
-    Direct,
-}
 
 /// An overlay that is ready to be painted.
 #[derive(Clone, Debug)]

@@ -149,11 +149,12 @@ impl SceneBuilder {
         }
         let start = Instant::now();
         let geometry = Geometry::build(self.parts);
+        let build_ms = start.elapsed().as_secs_f64() * 1e3;
         Scene {
-            build_ms: start.elapsed().as_secs_f64() * 1e3,
             name: self.name,
             generation: GENERATION.fetch_add(1, Ordering::Relaxed),
             geometry,
+            build_ms,
             objects: self.objects,
             materials: self.materials,
             textures: self.textures,
