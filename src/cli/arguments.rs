@@ -2,7 +2,6 @@
 //! show in the help from their lists as well.
 
 use super::values;
-use super::view::PRESENTS;
 use clap::{Arg, ArgAction, Command, crate_version, value_parser};
 use raywalk::math::simd;
 use raywalk::measure::metric::METRICS;
@@ -25,12 +24,7 @@ pub fn command() -> Command {
         .args_conflicts_with_subcommands(true)
         .subcommand_precedence_over_arg(true)
         .max_term_width(120);
-    let present = Arg::new("present")
-        .long("present")
-        .value_name("VALUE")
-        .value_parser(PRESENTS.iter().map(|(name, _)| *name).collect::<Vec<_>>())
-        .help("How the window shows a frame: auto copies it on a software adapter and blits it on a GPU");
-    with_shared(view).next_help_heading("Window").arg(present).subcommands([render(), info(), compare()])
+    with_shared(view).subcommands([render(), info(), compare()])
 }
 
 fn render() -> Command {

@@ -7,7 +7,7 @@ use super::output::{self, Output};
 use super::stage::Stage;
 use super::{Failure, render, stdout};
 use clap::ArgMatches;
-use raywalk::app::{self, AppError, AppOptions, Present};
+use raywalk::app::{self, AppError, AppOptions};
 use raywalk::picture::WriteOptions;
 use raywalk::settings::Settings;
 use std::path::Path;
@@ -15,10 +15,6 @@ use std::sync::Arc;
 
 /// What is written where no window can be opened.
 const PICTURE: &str = "raywalk.png";
-
-/// Ways to show a frame, by their names on the command line, the default first.
-pub const PRESENTS: &[(&str, Present)] =
-    &[("auto", Present::Auto), ("blit", Present::Blit), ("direct", Present::Direct)];
 
 /// Opens the window, or else renders one frame.
 pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
@@ -32,7 +28,6 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
         camera: frames.camera(frames.range.start, &stage.camera)?,
         settings: stage.settings.clone(),
         size: (stage.size.width, stage.size.height),
-        present: present(asked),
     };
     match app::run(window) {
         Err(AppError::NoDisplay(reason)) => {
@@ -46,12 +41,6 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
         Err(error) => Err(error.into()),
         Ok(_) => Ok(()),
     }
-}
-
-fn present(asked: &ArgMatches) -> Present {
-    let name = asked.get_one::<String>("present");
-    let named = PRESENTS.iter().find(|(known, _)| name.is_some_and(|name| name == known));
-    named.map_or_else(Present::default, |(_, present)| *present)
 }
 
 fn picture(stage: &Stage, frames: &Frames, options: &Options, interrupt: &Interrupt) -> Result<(), Failure> {
