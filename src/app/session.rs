@@ -81,6 +81,7 @@ impl Session {
         let gpu = Gpu::new(&window, &display).map_err(AppError::NoDisplay)?;
         let millihertz = window.current_monitor().and_then(|monitor| monitor.refresh_rate_millihertz());
         let rates = Rates::new(millihertz, gpu.is_software);
+        let bounds = options.scene.objects.iter().map(|object| object.bounds);
         let now = Instant::now();
         let mut session = Self {
             tracer: Tracer::start(options.scene.clone(), rates.display, word)?,
@@ -91,7 +92,7 @@ impl Session {
             display,
             scene: options.scene.clone(),
             settings: options.settings.clone(),
-            walker: Walker::new(options.camera, walker::extent(&options.scene)),
+            walker: Walker::new(options.camera, walker::surroundings(bounds, options.camera.eye)),
             keys: Keys::default(),
             capture: Capture::default(),
             pointer: DVec2::ZERO,

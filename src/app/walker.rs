@@ -3,15 +3,17 @@
 use super::input::Motion;
 use super::look::SpikeFilter;
 use crate::geometry::Aabb;
-use crate::scene::{Camera, Scene};
+use crate::scene::Camera;
 use glam::{DQuat, DVec2, DVec3, Vec3};
 
 /// Speed is multiplied by this for each notch of the wheel.
 const NOTCH: f64 = 1.1;
 /// Most notches away from the scene's own speed, either way: hundreds of millions of times, yet never zero.
 const MAX_NOTCHES: f64 = 200.0;
-/// Seconds to cross the scene at its own speed.
+/// Seconds to cross the surroundings.
 const CROSSING_SECONDS: f64 = 6.0;
+/// Size in metres of surroundings that have none, such as a lone plane.
+const NO_SURROUNDINGS: f64 = 10.0;
 /// Longest step in seconds: whoever comes back from a stall should not find themselves elsewhere.
 const MAX_STEP_SECONDS: f64 = 0.25;
 /// Speed factor of the fast key, and of the slow one inverted.
@@ -52,8 +54,8 @@ pub struct Walker {
 }
 
 impl Walker {
-    /// Stands at `home`. `extent` is the size of the scene in metres: it sets the speed.
-    pub fn new(home: Camera, extent: f64) -> Self {
+    /// Stands at `home`. `surroundings` is the size of what is there in metres: it sets the speed.
+    pub fn new(home: Camera, surroundings: f64) -> Self {
         let (upright, pose) = stand(&home);
         Self {
             sensitivity: SENSITIVITY,
@@ -64,7 +66,7 @@ impl Walker {
             upright,
             pose,
             fov: home.fov,
-            base_speed: extent / CROSSING_SECONDS,
+            base_speed: surroundings / CROSSING_SECONDS,
             notches: 0.0,
             spikes: SpikeFilter::default(),
         }
@@ -186,16 +188,15 @@ fn stand(camera: &Camera) -> (DQuat, Pose) {
     (upright, pose)
 }
 
-/// The size of a scene in metres: the diagonal of everything that ends somewhere.
-pub fn extent(scene: &Scene) -> f64 {
-    let bounds = scene
-        .objects
-        .iter()
-        .map(|object| object.bounds)
-        .filter(|bounds| bounds.is_finite() && !bounds.is_empty())
-        .fold(Aabb::EMPTY, Aabb::union);
-    let diagonal = if bounds.is_empty() { Vec3::ZERO } else { bounds.size() }.as_dvec3().length();
-    if diagonal > 0.0 { diagonal } else { 10.0 }
+/// The size in metres of what surrounds a walker at `eye`, by the bounds of all objects: twice as far as the far side
+/// of half of them is.
+/// The median, so that neither a landscape around a house nor a sky sphere counts; planes have no size.
+pub fn surroundings(bounds: impl Iterator<Item = Aabb>, eye: Vec3) -> f64 {
+    let reach =
+        |bounds: Aabb| bounds.center().as_dvec3().distance(eye.as_dvec3()) + bounds.size().as_dvec3().length() / 2.0;
+    let mut reaches: Vec<f64> = bounds.filter(|b| b.is_finite() && !b.is_empty()).map(reach).collect();
+    reaches.sort_by(f64::total_cmp);
+    reaches.get(reaches.len() / 2).map(|median| 2.0 * median).filter(|size| *size > 0.0).unwrap_or(NO_SURROUNDINGS)
 }
 
 #[cfg(test)]
@@ -277,7 +278,7 @@ mod tests {
     #[test]
     fn a_second_of_walking_is_as_far_at_any_frame_rate_and_in_any_direction() {
         let straight = walked(60, Motion { forward: 1.0, ..Motion::default() });
-        assert!((straight - 2.0).abs() < 1e-6, "an extent of 12 m at 6 s: {straight}");
+        assert!((straight - 2.0).abs() < 1e-6, "12 m in 6 s: {straight}");
         for fps in [15, 60, 240] {
             for motion in [
                 Motion { forward: 1.0, right: 1.0, ..Motion::default() },
@@ -287,6 +288,18 @@ mod tests {
             }
         }
         assert!(walked(60, Motion { forward: 1.0, fast: true, ..Motion::default() }) > 3.9 * straight);
+    }
+
+    #[test]
+    fn a_landscape_around_a_house_does_not_speed_the_walker_up() {
+        let bounds = |center: Vec3, half: f32| Aabb { min: center - half, max: center + half };
+        let eye = Vec3::new(0.0, 1.6, 4.0);
+        let mut all: Vec<Aabb> = (0..9).map(|i| bounds(Vec3::new(i as f32 - 4.0, 1.0, 0.0), 0.5)).collect();
+        let room = surroundings(all.iter().copied(), eye);
+        assert!((8.0..16.0).contains(&room), "{room}");
+        all.extend([Aabb::INFINITE, Aabb::EMPTY, bounds(Vec3::ZERO, 5000.0)]);
+        assert!((surroundings(all.into_iter(), eye) / room - 1.0).abs() < 0.3);
+        assert_eq!(surroundings([Aabb::INFINITE].into_iter(), eye), NO_SURROUNDINGS);
     }
 
     #[test]

@@ -4,6 +4,7 @@ mod blit;
 mod cli;
 mod exactness;
 mod imports;
+mod our_scenes;
 mod overlay;
 mod picture_bits;
 mod random;

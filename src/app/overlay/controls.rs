@@ -2,7 +2,8 @@
 
 use super::{Change, View, theme};
 use crate::app::walker::FOV_RANGE;
-use crate::settings::{Choice, Kind, ROWS, Row};
+use crate::math::simd;
+use crate::settings::{Choice, Kind, ROWS, Row, Settings};
 use egui::{ComboBox, DragValue, Grid, Response, RichText, Slider, Ui};
 
 /// Whole-number ranges wider than this get a number to drag: on a slider every pixel would be a leap.
@@ -32,6 +33,12 @@ pub fn settings(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     }
 }
 
+/// Whether this machine can do a value of a row.
+fn is_possible(row: &Row, value: &str, settings: &Settings) -> bool {
+    let mut settings = settings.clone();
+    (row.set)(&mut settings, value).is_ok() && simd::is_available(settings.simd)
+}
+
 /// The control of a row, and the value that was asked for, as it would be typed.
 fn control(ui: &mut Ui, row: &Row, value: &str, view: &View<'_>) -> (Response, Option<String>) {
     match &row.kind {
@@ -41,18 +48,22 @@ fn control(ui: &mut Ui, row: &Row, value: &str, view: &View<'_>) -> (Response, O
             let wanted = response.changed().then(|| if on { "on" } else { "off" }.to_owned());
             (response, wanted)
         }
-        Kind::Choice(choices) => choice(ui, row, choices, value),
+        Kind::Choice(choices) => choice(ui, row, choices, value, view.settings),
         &Kind::Number { min, max, integer, .. } => number(ui, value, min, max, integer, view),
     }
 }
 
-fn choice(ui: &mut Ui, row: &Row, choices: &[Choice], value: &str) -> (Response, Option<String>) {
+fn choice(ui: &mut Ui, row: &Row, choices: &[Choice], value: &str, settings: &Settings) -> (Response, Option<String>) {
     let mut wanted = None;
     let combo = ComboBox::from_id_salt(row.name).selected_text(value);
     let shown = combo.show_ui(ui, |ui| {
         for choice in choices {
-            let entry = ui.selectable_label(choice.value == value, choice.value);
-            if entry.on_hover_text(choice.promise.to_string()).clicked() && choice.value != value {
+            let selected = choice.value == value;
+            let entry = egui::Button::selectable(selected, choice.value);
+            let entry = ui.add_enabled(is_possible(row, choice.value, settings), entry);
+            if entry.on_disabled_hover_text("this machine lacks it").on_hover_text(choice.promise.to_string()).clicked()
+                && !selected
+            {
                 wanted = Some(choice.value.to_owned());
             }
         }
