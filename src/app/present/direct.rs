@@ -55,9 +55,9 @@ impl Direct {
     fn join(&mut self, width: u32, height: u32) {
         // The order is chosen out here, so that the loops over pixels know it.
         if self.swaps {
-            self.join_ordered(width, height, swapped)
+            self.join_ordered(width, height, swapped);
         } else {
-            self.join_ordered(width, height, |rgba| rgba)
+            self.join_ordered(width, height, |rgba| rgba);
         }
     }
 
