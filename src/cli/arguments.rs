@@ -152,6 +152,7 @@ fn switch(name: &'static str, help: &'static str) -> Arg {
 
 /// The flag of a setting.
 fn setting(row: &'static Row) -> Arg {
+    let help = capitalized(row.help);
     let arg = Arg::new(row.name).long(row.name).value_parser(move |text: &str| checked(row, text));
     match &row.kind {
         Kind::Choice(choices) => {
@@ -166,10 +167,16 @@ fn setting(row: &'static Row) -> Arg {
         }
         Kind::Number { min, max, promise, .. } => arg
             .value_name("N")
-            .help(row.help)
+            .help(help.clone())
             .allow_hyphen_values(*min < 0.0)
-            .long_help(format!("{}\n{min} to {max}: {promise}", row.help)),
+            .long_help(format!("{help}\n{min} to {max}: {promise}")),
     }
+}
+
+/// The sentence with a capital first letter, as help is written.
+fn capitalized(sentence: &str) -> String {
+    let (first, rest) = sentence.split_at(sentence.chars().next().map_or(0, char::len_utf8));
+    first.to_uppercase() + rest
 }
 
 /// The text of a setting, if this machine can do it.

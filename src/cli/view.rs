@@ -39,7 +39,12 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
             Ok(())
         }
         Err(error) => Err(error.into()),
-        Ok(_) => Ok(()),
+        Ok(_) => {
+            if options.stats.is_some() && !options.reading.quiet {
+                stdout::note("warning: a walk has no --stats; raywalk render writes them");
+            }
+            Ok(())
+        }
     }
 }
 

@@ -49,13 +49,22 @@ impl<const N: usize> Block<N> {
     /// The fields of one primitive in every lane.
     #[inline(always)]
     pub fn splat<S: Simd, F: Lanes<S>>(&self, simd: S, place: usize) -> [F; N] {
-        std::array::from_fn(|f| F::splat(simd, self.fields[f][place]))
+        // A loop, not `from_fn`: its closure would not be inlined into the code of the SIMD level.
+        let mut lanes = [F::splat(simd, 0.0); N];
+        for (lane, field) in lanes.iter_mut().zip(&self.fields) {
+            *lane = F::splat(simd, field[place]);
+        }
+        lanes
     }
 
     /// Each field of all primitives.
     #[inline(always)]
     pub fn load<S: Simd>(&self, simd: S) -> [f32x8<S>; N] {
-        std::array::from_fn(|f| f32x8::from_slice(simd, &self.fields[f]))
+        let mut lanes = [f32x8::splat(simd, 0.0); N];
+        for (lane, field) in lanes.iter_mut().zip(&self.fields) {
+            *lane = f32x8::from_slice(simd, field);
+        }
+        lanes
     }
 
     /// Bounds of all primitives in it.

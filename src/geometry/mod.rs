@@ -1,6 +1,6 @@
 //! What a ray can meet and how to find it. This room knows no colour.
 //!
-//! [`Geometry`] holds every primitive in [`Block`]s of one type and a tree over them; [`traverse`](Geometry::traverse)
+//! [`Geometry`] holds every primitive in [`Block`]s of one type and a tree over them; [`traverse`](Search::traverse)
 //! is the one text that finds closest hits and occluders, with what to do about a hit left to a [`Visitor`].
 
 pub mod aabb;

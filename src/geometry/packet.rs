@@ -2,7 +2,7 @@
 
 use super::Geometry;
 use super::bvh::{Node, WIDTH};
-use crate::math::{Lanes, V3};
+use crate::math::V3;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, mask32x8};
 use glam::Vec3;
@@ -42,18 +42,13 @@ struct Reach {
 impl<S: Simd> Packet<S> {
     /// A packet in the space of `geometry`.
     #[inline(always)]
-    pub fn new(simd: S, geometry: &Geometry, origin: V3<S::f32s>, direction: V3<S::f32s>) -> Self {
-        let least = S::f32s::splat(simd, LEAST_COMPONENT);
-        let one = S::f32s::splat(simd, 1.0);
-        let invert = |d: S::f32s| one / d.abs().simd_lt(least).select(least.copysign(d), d);
-        let inverse = V3::new(invert(direction.x), invert(direction.y), invert(direction.z));
-        let min = |v: V3<S::f32s>| Vec3::new(v.x.reduce_min(), v.y.reduce_min(), v.z.reduce_min());
-        let max = |v: V3<S::f32s>| Vec3::new(v.x.reduce_max(), v.y.reduce_max(), v.z.reduce_max());
+    pub fn new(geometry: &Geometry, origin: V3<S::f32s>, direction: V3<S::f32s>) -> Self {
+        let inverse = V3::new(invert::<S>(direction.x), invert::<S>(direction.y), invert::<S>(direction.z));
         let reach = Reach {
-            origin_min: min(origin),
-            origin_max: max(origin),
-            inverse_min: min(inverse),
-            inverse_max: max(inverse),
+            origin_min: least_lanes::<S>(origin),
+            origin_max: largest_lanes::<S>(origin),
+            inverse_min: least_lanes::<S>(inverse),
+            inverse_max: largest_lanes::<S>(inverse),
         };
         let farthest = reach.origin_min.abs().max(reach.origin_max.abs()).max_element();
         Self { origin, direction, inverse, padding: (farthest + geometry.reach()) * BOX_PADDING, reach }
@@ -74,11 +69,8 @@ impl<S: Simd> Packet<S> {
     /// Whether the rays fly close enough together to share a walk through the tree.
     #[inline(always)]
     pub fn is_coherent(&self) -> bool {
-        let spread = |v: V3<S::f32s>| {
-            let extent = |c: S::f32s| c.reduce_max() - c.reduce_min();
-            extent(v.x).max(extent(v.y)).max(extent(v.z))
-        };
-        spread(self.direction) < MOST_SPREAD
+        let spread = largest_lanes::<S>(self.direction) - least_lanes::<S>(self.direction);
+        spread.max_element() < MOST_SPREAD
     }
 
     /// Which of a node's boxes any ray of the packet could enter before `limit`: an overestimate of
@@ -108,26 +100,46 @@ impl<S: Simd> Packet<S> {
     /// Which rays enter a padded box before their `limit`, and how far away.
     #[inline(always)]
     pub fn enter_box(&self, node: &Node, child: usize, limit: S::f32s) -> (<S::f32s as SimdBase<S>>::Mask, S::f32s) {
-        let slab = |axis: usize, origin: S::f32s, inverse: S::f32s| {
-            let to_min = (-(origin + self.padding) + node.min[axis][child]) * inverse;
-            let to_max = (-(origin - self.padding) + node.max[axis][child]) * inverse;
-            (to_min.min(to_max), to_min.max(to_max))
-        };
-        let (near_x, far_x) = slab(0, self.origin.x, self.inverse.x);
-        let (near_y, far_y) = slab(1, self.origin.y, self.inverse.y);
-        let (near_z, far_z) = slab(2, self.origin.z, self.inverse.z);
+        let (near_x, far_x) = self.slab(node.min[0][child], node.max[0][child], self.origin.x, self.inverse.x);
+        let (near_y, far_y) = self.slab(node.min[1][child], node.max[1][child], self.origin.y, self.inverse.y);
+        let (near_z, far_z) = self.slab(node.min[2][child], node.max[2][child], self.origin.z, self.inverse.z);
         let zero = S::f32s::splat(limit.token(), 0.0);
         let near = near_x.max(near_y).max(near_z.max(zero));
         let far = far_x.min(far_y).min(far_z.min(limit));
         // At equal distance a box is not skipped: what is in it may win the tie.
         (near.simd_le(far), near)
     }
+
+    /// Where rays enter and leave the space between two padded planes across one axis.
+    #[inline(always)]
+    fn slab(&self, min: f32, max: f32, origin: S::f32s, inverse: S::f32s) -> (S::f32s, S::f32s) {
+        let simd = origin.token();
+        let to_min = (S::f32s::splat(simd, min) - (origin + self.padding)) * inverse;
+        let to_max = (S::f32s::splat(simd, max) - (origin - self.padding)) * inverse;
+        (to_min.min(to_max), to_min.max(to_max))
+    }
 }
 
 const _: () = assert!(WIDTH == 8, "a node's boxes fill eight lanes");
 
-/// The largest of all lanes.
+// Functions, not closures: those would not be inlined into the code of their SIMD level.
+
+/// One over each component of a direction, without infinities.
 #[inline(always)]
-pub fn largest_lane<S: Simd, F: Lanes<S>>(v: F) -> f32 {
-    v.reduce_max()
+fn invert<S: Simd>(d: S::f32s) -> S::f32s {
+    let simd = d.token();
+    let least = S::f32s::splat(simd, LEAST_COMPONENT);
+    S::f32s::splat(simd, 1.0) / d.abs().simd_lt(least).select(least.copysign(d), d)
+}
+
+/// The least of all lanes, component by component.
+#[inline(always)]
+fn least_lanes<S: Simd>(v: V3<S::f32s>) -> Vec3 {
+    Vec3::new(v.x.reduce_min(), v.y.reduce_min(), v.z.reduce_min())
+}
+
+/// The largest of all lanes, component by component.
+#[inline(always)]
+fn largest_lanes<S: Simd>(v: V3<S::f32s>) -> Vec3 {
+    Vec3::new(v.x.reduce_max(), v.y.reduce_max(), v.z.reduce_max())
 }

@@ -1,7 +1,6 @@
 //! The one traversal: closest hits, occluders and transparent crossings all go through it.
 
 use super::bvh::{Bvh, Child, Leaf, WIDTH};
-use super::packet::largest_lane;
 use super::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use super::visitor::Mask;
 use super::{Block, Geometry, Packet, PrimitiveIndex, PrimitiveKind, Visitor};
@@ -103,7 +102,7 @@ impl<'a> Search<'a> {
             }
             depth -= 1;
             let Pending { child, near } = stack[depth];
-            let limit = largest_lane::<S, _>(visitor.limit());
+            let limit = visitor.limit().reduce_max();
             if near > limit {
                 continue;
             }

@@ -11,7 +11,7 @@ pub type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
 pub trait Visitor<S: Simd> {
     /// Whether a primitive takes part at all.
     #[inline(always)]
-    fn accepts(&self, _primitive: PrimitiveIndex) -> bool {
+    fn accepts(&mut self, _primitive: PrimitiveIndex) -> bool {
         true
     }
 
@@ -107,6 +107,9 @@ pub struct AnyHit<'a, S: Simd> {
     pub blocked: Mask<S>,
     /// The primitive found last, or [`NO_PRIMITIVE`].
     pub blocker: PrimitiveIndex,
+    /// Whether something transparent was passed over. If not, a finished traversal proves that no ray that is not
+    /// blocked crosses anything.
+    pub passed_transparent: bool,
 }
 
 /// Which primitives block light altogether: a bit for each, or all of them.
@@ -138,14 +141,16 @@ impl<'a, S: Simd> AnyHit<'a, S> {
         let zero = S::f32s::splat(simd, 0.0);
         let below = S::f32s::from_bits(limit.to_bits() - 1);
         let limit = limit.simd_gt(zero).select(below, zero - 1.0);
-        Self { limit, opaque, blocked: Mask::<S>::splat(simd, false), blocker: NO_PRIMITIVE }
+        Self { limit, opaque, blocked: Mask::<S>::splat(simd, false), blocker: NO_PRIMITIVE, passed_transparent: false }
     }
 }
 
 impl<S: Simd> Visitor<S> for AnyHit<'_, S> {
     #[inline(always)]
-    fn accepts(&self, primitive: PrimitiveIndex) -> bool {
-        self.opaque.contains(primitive)
+    fn accepts(&mut self, primitive: PrimitiveIndex) -> bool {
+        let accepted = self.opaque.contains(primitive);
+        self.passed_transparent |= !accepted;
+        accepted
     }
 
     #[inline(always)]
@@ -210,7 +215,7 @@ impl<'a, S: Simd> NextCrossing<'a, S> {
 
 impl<S: Simd> Visitor<S> for NextCrossing<'_, S> {
     #[inline(always)]
-    fn accepts(&self, primitive: PrimitiveIndex) -> bool {
+    fn accepts(&mut self, primitive: PrimitiveIndex) -> bool {
         !self.opaque[primitive as usize]
     }
 

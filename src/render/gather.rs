@@ -168,7 +168,11 @@ impl SlotsOf<'_> {
                 row[lane] = field[usize::from(slot.place)];
             }
         }
-        gathered.each_ref().map(|row| S::f32s::from_slice(simd, &row[..lanes]))
+        let mut fields = [S::f32s::splat(simd, 0.0); N];
+        for (field, row) in fields.iter_mut().zip(&gathered) {
+            *field = S::f32s::from_slice(simd, &row[..lanes]);
+        }
+        fields
     }
 }
 

@@ -5,6 +5,7 @@ use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::Vec3;
+use std::ops::Range;
 
 /// The widest packet: queues keep this much room beyond their length, so that every packet is a full load.
 pub const MOST_LANES: usize = 16;
@@ -22,6 +23,12 @@ impl Columns {
         for column in [&mut self.x, &mut self.y, &mut self.z] {
             column.resize(len, 0.0);
         }
+    }
+
+    fn fill(&mut self, places: Range<usize>, v: Vec3) {
+        self.x[places.clone()].fill(v.x);
+        self.y[places.clone()].fill(v.y);
+        self.z[places].fill(v.z);
     }
 
     pub fn set(&mut self, at: usize, v: Vec3) {
@@ -104,6 +111,18 @@ impl RayQueue {
         self.sample[at] = sample;
         self.media[at] = media;
         self.len += 1;
+    }
+
+    /// Appends `count` rays of full weight from one origin, to be aimed; returns the first one's place.
+    pub fn extend_from(&mut self, origin: Vec3, media: u32, count: usize) -> usize {
+        let first = self.len;
+        self.reserve(first + count);
+        let new = first..first + count;
+        self.origin.fill(new.clone(), origin);
+        self.weight.fill(new.clone(), Vec3::ONE);
+        self.media[new.clone()].fill(media);
+        self.len = new.end;
+        first
     }
 
     /// Repeats the last ray beyond the end, so that a packet that is not full stays as coherent as its rays.

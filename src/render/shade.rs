@@ -168,8 +168,11 @@ impl<S: Simd> View<S> {
     fn new(simd: S, surfaces: &Surfaces<S>, direction: V3<S::f32s>) -> Self {
         let geometric = surfaces.point.normal;
         let from_behind = direction.dot(geometric).simd_gt(S::f32s::splat(simd, 0.0));
-        let facing = |n: V3<S::f32s>| V3::select(from_behind, -n, n);
-        Self { from_behind, normal: facing(surfaces.shading_normal), facing: facing(geometric) }
+        Self {
+            from_behind,
+            normal: V3::select(from_behind, -surfaces.shading_normal, surfaces.shading_normal),
+            facing: V3::select(from_behind, -geometric, geometric),
+        }
     }
 }
 
@@ -233,6 +236,13 @@ fn light_gain<S: Simd>(
     Some((reaching, to_light, distance, lit.weight * arriving * reflected))
 }
 
+/// The value where it is above 0, else 0. What is not a number (the half vector of a light straight behind) is 0 too.
+#[inline(always)]
+fn positive<S: Simd>(value: S::f32s) -> S::f32s {
+    let zero = S::f32s::splat(value.token(), 0.0);
+    value.simd_gt(zero).select(value, zero)
+}
+
 /// Lambert and Blinn-Phong: (1-t) diffuse color (n·l) + specular (n·h)^shininess.
 #[inline(always)]
 fn phong<S: Simd>(
@@ -249,11 +259,8 @@ fn phong<S: Simd>(
     if !materials.any(hits, |m| frame.tables.materials[m].shiny) {
         return matte;
     }
-    let zero = S::f32s::splat(simd, 0.0);
     let half = (to_light + lit.to_viewer).normalize();
-    let n_dot_h = lit.normal.dot(half);
-    // A half vector that is not a number (light straight behind) fails the comparison.
-    let n_dot_h = n_dot_h.simd_gt(zero).select(n_dot_h, zero);
+    let n_dot_h = positive::<S>(lit.normal.dot(half));
     let highlight = pow::<S, S::f32s>(n_dot_h, materials.row(simd, frame, Row::Shininess as usize));
     matte + materials.triple(simd, frame, Row::Specular).scale(highlight)
 }
@@ -269,27 +276,25 @@ fn metallic_roughness<S: Simd>(
     to_light: V3<S::f32s>,
     n_dot_l: S::f32s,
 ) -> V3<S::f32s> {
-    let number = |value: f32| S::f32s::splat(simd, value);
-    let (zero, one) = (number(0.0), number(1.0));
+    let one = S::f32s::splat(simd, 1.0);
     let half = (to_light + lit.to_viewer).normalize();
-    let at_least_zero = |v: S::f32s| v.simd_gt(zero).select(v, zero);
-    let n_dot_v = at_least_zero(lit.normal.dot(lit.to_viewer));
-    let n_dot_h = at_least_zero(lit.normal.dot(half));
-    let v_dot_h = at_least_zero(lit.to_viewer.dot(half));
+    let n_dot_v = positive::<S>(lit.normal.dot(lit.to_viewer));
+    let n_dot_h = positive::<S>(lit.normal.dot(half));
+    let v_dot_h = positive::<S>(lit.to_viewer.dot(half));
 
     let alpha = roughness * roughness;
     // A perfect mirror's highlight of a point light has no width: keep it visible and finite.
-    let alpha2 = (alpha * alpha).max(number(1e-6));
+    let alpha2 = (alpha * alpha).max(1e-6);
     let d = n_dot_h * n_dot_h * (alpha2 - one) + one;
     let distribution = alpha2 / (d * d * std::f32::consts::PI);
-    let smith = |a: S::f32s, b: S::f32s| a * (b * b * (one - alpha2) + alpha2).sqrt();
-    let visibility = number(0.5) / (smith(n_dot_l, n_dot_v) + smith(n_dot_v, n_dot_l)).max(number(1e-7));
+    let smith_l = n_dot_l * (n_dot_v * n_dot_v * (one - alpha2) + alpha2).sqrt();
+    let smith_v = n_dot_v * (n_dot_l * n_dot_l * (one - alpha2) + alpha2).sqrt();
+    let visibility = S::f32s::splat(simd, 0.5) / (smith_l + smith_v).max(1e-7);
 
     let x = one - v_dot_h;
     let x2 = x * x;
     let schlick = x2 * x2 * x;
-    let dielectric = number(0.04);
-    let f0 = V3::all(dielectric * (one - metallic)) + lit.color.scale(metallic);
+    let f0 = V3::all((one - metallic) * 0.04) + lit.color.scale(metallic);
     let fresnel = f0 + (V3::all(one) - f0).scale(schlick);
     let diffuse = lit.opacity * lit.color.scale((one - metallic) * std::f32::consts::FRAC_1_PI);
     ((V3::all(one) - fresnel) * diffuse + fresnel.scale(distribution * visibility)).scale(n_dot_l)

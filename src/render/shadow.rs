@@ -40,8 +40,7 @@ fn resolve_light<S: Simd>(
             queue.pad();
             for at in (0..queue.len()).step_by(S::f32s::LEN) {
                 let lanes = (queue.len() - at).min(S::f32s::LEN);
-                let packet =
-                    Packet::new(simd, search.geometry, queue.origin.load(simd, at), queue.direction.load(simd, at));
+                let packet = Packet::new(search.geometry, queue.origin.load(simd, at), queue.direction.load(simd, at));
                 let distance = S::f32s::from_slice(simd, &queue.distance[at..at + S::f32s::LEN]);
                 let mut visitor = AnyHit::new(simd, distance, opaque);
                 if frame.settings.shadow_cache {
@@ -55,6 +54,7 @@ fn resolve_light<S: Simd>(
                 }
                 let mut gain: V3<S::f32s> = queue.gain.load(simd, at);
                 if let Opaque::Listed(listed) = opaque
+                    && visitor.passed_transparent
                     && visitor.blocked.any_false()
                 {
                     let open = visitor.blocked.select(S::f32s::splat(simd, 0.0), distance);

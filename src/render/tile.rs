@@ -181,7 +181,7 @@ impl FilmTile {
         for pixel in 0..self.width * self.height {
             let seen = &seen[sample_at(pixel % self.width, pixel / self.width) as usize];
             let id = frame.scene.geometry.ids.get(seen.primitive as usize);
-            store(&mut self.depth, pixel, seen.t);
+            store(&mut self.depth, pixel, id.map_or(f32::INFINITY, |_| seen.t));
             store(&mut self.normal, pixel, seen.normal);
             store(&mut self.object, pixel, id.map_or(u32::MAX, |id| id.object));
             store(&mut self.primitive, pixel, id.map_or(u32::MAX, |id| id.primitive));

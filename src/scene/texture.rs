@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
+use std::sync::LazyLock;
 
 /// A picture wrapped around by repetition, one texel per byte triple.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,7 +36,8 @@ impl Texture {
     pub fn sample(&self, uv: Vec2) -> Vec3 {
         match self {
             Self::Checker { colors, size } => {
-                let odd = ((uv.x / size).floor() + (uv.y / size).floor()).rem_euclid(2.0) != 0.0;
+                let sum = floor(uv.x / size) + floor(uv.y / size);
+                let odd = sum - 2.0 * floor(sum * 0.5) != 0.0;
                 colors[usize::from(odd)]
             }
             Self::Image(image) => image.sample(uv),
@@ -46,27 +48,43 @@ impl Texture {
 impl ImageTexture {
     /// Bilinear lookup with repetition, in linear light.
     pub fn sample(&self, uv: Vec2) -> Vec3 {
-        let (width, height) = (self.width as f32, self.height as f32);
-        let wrap = |t: f32| if t.is_finite() { t - t.floor() } else { 0.0 };
-        let x = wrap(uv.x / self.size) * width - 0.5;
-        let y = (1.0 - wrap(uv.y / self.size)) * height - 0.5;
-        let (x0, y0) = (x.floor(), y.floor());
-        let (fx, fy) = (x - x0, y - y0);
-        let column = |offset: i64| (x0 as i64 + offset).rem_euclid(i64::from(self.width)) as usize;
-        let row = |offset: i64| (y0 as i64 + offset).rem_euclid(i64::from(self.height)) as usize;
-        let texel = |column: usize, row: usize| {
-            let [r, g, b] = self.texels[row * self.width as usize + column];
-            Vec3::new(srgb_to_linear(r), srgb_to_linear(g), srgb_to_linear(b))
+        let (left, right, across) = neighbours(uv.x / self.size, self.width);
+        let (bottom, top, up) = neighbours(uv.y / self.size, self.height);
+        // Rows are counted from the top, v from the bottom.
+        let row = |from_bottom: u32| (self.height - 1 - from_bottom) as usize * self.width as usize;
+        let decode = srgb_table();
+        let texel = |row: usize, column: u32| {
+            Vec3::from_array(self.texels[row + column as usize].map(|byte| decode[usize::from(byte)]))
         };
-        let top = texel(column(0), row(0)) * (1.0 - fx) + texel(column(1), row(0)) * fx;
-        let bottom = texel(column(0), row(1)) * (1.0 - fx) + texel(column(1), row(1)) * fx;
-        top * (1.0 - fy) + bottom * fy
+        let along = |row: usize| texel(row, left) * (1.0 - across) + texel(row, right) * across;
+        along(row(bottom)) * (1.0 - up) + along(row(top)) * up
     }
+}
+
+/// The two texels around coordinate `t` of a repeating row of `size` texels, and the share of the second.
+fn neighbours(t: f32, size: u32) -> (u32, u32, f32) {
+    let t = if t.is_finite() { t } else { 0.0 };
+    let position = (t - floor(t)) * size as f32 - 0.5;
+    let before = floor(position);
+    let wrap = |texel: f32| if texel < 0.0 { size - 1 } else { (texel as u32) % size };
+    (wrap(before), wrap(before + 1.0), position - before)
+}
+
+/// Rounds down. Inline on every processor, where `f32::floor` may be a call; numbers too large to have a fraction stay.
+fn floor(t: f32) -> f32 {
+    if t.abs() >= 8_388_608.0 {
+        return t;
+    }
+    let truncated = t as i32 as f32;
+    if truncated > t { truncated - 1.0 } else { truncated }
 }
 
 /// Decodes one sRGB byte to linear light (IEC 61966-2-1), by a table made at first use.
 pub fn srgb_to_linear(byte: u8) -> f32 {
-    use std::sync::LazyLock;
+    srgb_table()[usize::from(byte)]
+}
+
+fn srgb_table() -> &'static [f32; 256] {
     static TABLE: LazyLock<[f32; 256]> = LazyLock::new(|| {
         std::array::from_fn(|i| {
             let encoded = i as f64 / 255.0;
@@ -74,5 +92,5 @@ pub fn srgb_to_linear(byte: u8) -> f32 {
             linear as f32
         })
     });
-    TABLE[usize::from(byte)]
+    &TABLE
 }

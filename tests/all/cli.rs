@@ -204,13 +204,26 @@ fn every_format_is_written_whole_and_under_its_name_only() {
 
 #[test]
 fn planes_are_written_where_asked() {
+    use exr::prelude::*;
     let bench = Bench::new();
     bench.write("scene.json", SCENE);
     bench.done("render scene.json --aov depth,normal,object,primitive -o a.exr");
-    let file = std::io::BufReader::new(fs::File::open(bench.path("a.exr")).expect("written"));
-    let meta = exr::prelude::MetaData::read_from_buffered(file, true).expect("an EXR");
-    let names: Vec<_> = meta.headers[0].channels.list.iter().map(|channel| channel.name.to_string()).collect();
+    let image = read_first_flat_layer_from_file(bench.path("a.exr")).expect("an EXR");
+    let channels = image.layer_data.channel_data.list;
+    let names: Vec<_> = channels.iter().map(|channel| channel.name.to_string()).collect();
     assert_eq!(names, ["B", "G", "R", "depth", "normal.X", "normal.Y", "normal.Z", "object", "primitive"]);
+
+    // The scene's only sphere lies in the middle; the corner sees nothing.
+    let (corner, middle) = (0, 8 * 24 + 12);
+    let floats = |pixel| channels[3..7].iter().map(|c| c.sample_data.value_by_flat_index(pixel).to_f32()).collect();
+    let missed: Vec<f32> = floats(corner);
+    let seen: Vec<f32> = floats(middle);
+    assert_eq!(missed, [f32::INFINITY, 0.0, 0.0, 0.0]);
+    assert!((seen[0] - 4.0).abs() < 0.1 && seen[3] > 0.9, "{seen:?}");
+    for (channel, hit) in channels[7..].iter().zip([0, 0]) {
+        assert_eq!(channel.sample_data.value_by_flat_index(corner), Sample::U32(u32::MAX));
+        assert_eq!(channel.sample_data.value_by_flat_index(middle), Sample::U32(hit));
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod blit;
 mod cli;
 mod imports;
+mod our_scenes;
 mod overlay;
 mod scene_errors;
 mod scene_files;

@@ -65,11 +65,8 @@ impl Kernel<9> for Cone {
         let q = -(b + b.simd_lt(zero).select(-root, root));
         let (s0, s1) = (q / a, c / q);
         // A root that is not a number (no quadratic, or a ray along the wall) fails every comparison below.
-        let valid = |s: F| {
-            let on_side = (height + climb * s).abs().simd_le(half_height);
-            on_side & (nearest_t + s).simd_gt(t_min)
-        };
-        let (valid0, valid1) = (valid(s0), valid(s1));
+        let valid0 = (height + climb * s0).abs().simd_le(half_height) & (nearest_t + s0).simd_gt(t_min);
+        let valid1 = (height + climb * s1).abs().simd_le(half_height) & (nearest_t + s1).simd_gt(t_min);
         let first = valid0 & (!valid1 | s0.simd_le(s1));
         (meets & (valid0 | valid1), nearest_t + first.select(s0, s1))
     }

@@ -53,11 +53,21 @@ impl Triangle {
         [opposite_a, -opposite_b, opposite_c]
     }
 
+    /// How far along the ray each corner lies.
+    #[inline(always)]
+    fn depths<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], origin: V3<F>, direction: V3<F>) -> [F; 3] {
+        let [a, b, c] = *corners;
+        [(a - origin).dot(direction), (b - origin).dot(direction), (c - origin).dot(direction)]
+    }
+
     /// The stored corners of a triangle given by its fields.
     #[inline(always)]
     fn corners<F: Copy>(fields: &[F; 10]) -> [V3<F>; 3] {
-        let corner = |i: usize| V3::new(fields[i], fields[i + 1], fields[i + 2]);
-        [corner(0), corner(3), corner(6)]
+        [
+            V3::new(fields[0], fields[1], fields[2]),
+            V3::new(fields[3], fields[4], fields[5]),
+            V3::new(fields[6], fields[7], fields[8]),
+        ]
     }
 
     /// Barycentric weights of the stored corners at the hit, summing to 1.
@@ -83,8 +93,8 @@ impl Kernel<10> for Triangle {
         let front = u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero);
         let back = u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero);
         let sum = u + v + w;
-        let depth = |i: usize| (corners[i] - origin).dot(direction);
-        let t = (u * depth(0) + v * depth(1) + w * depth(2)) / sum;
+        let [depth_a, depth_b, depth_c] = Self::depths(&corners, origin, direction);
+        let t = (u * depth_a + v * depth_b + w * depth_c) / sum;
         ((front | back) & sum.simd_ne(zero) & t.simd_gt(t_min), t)
     }
 

@@ -11,7 +11,6 @@ use super::trace;
 use crate::settings::Visibility;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use glam::Vec3;
 use std::time::Instant;
 
 /// Fills in the colours and what is seen, for all samples of a pass.
@@ -63,12 +62,12 @@ fn append_pixels<S: Simd>(
     media: u32,
     rays: &mut super::queue::RayQueue,
 ) {
-    let first = rays.len();
-    for &[x, y] in pixels {
-        let sample = super::tile::sample_at(x.into(), y.into());
+    let first = rays.extend_from(frame.camera.eye, media, pixels.len());
+    for (at, &[x, y]) in (first..).zip(pixels) {
+        rays.sample[at] = super::tile::sample_at(x.into(), y.into());
         // The direction's columns hold the picture coordinates until `aim` turns them into directions.
-        let at = Vec3::new((pass.x + usize::from(x)) as f32, (pass.y + usize::from(y)) as f32, 0.0);
-        rays.push(frame.camera.eye, at, Vec3::ONE, sample, media);
+        rays.direction.x[at] = (pass.x + usize::from(x)) as f32;
+        rays.direction.y[at] = (pass.y + usize::from(y)) as f32;
     }
     aim(simd, frame, pass.offset, first, rays);
 }
