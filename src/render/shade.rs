@@ -3,7 +3,7 @@
 //! Lambert (1760), Blinn-Phong (Blinn, SIGGRAPH 1977) and glTF's metallic-roughness (Khronos, glTF 2.0 appendix B).
 
 use super::frame::Frame;
-use super::gather::{Hits, Materials, Surfaces, bits, surfaces};
+use super::gather::{Hits, Materials, Surfaces, surfaces};
 use super::leave;
 use super::queue::RayQueue;
 use super::secondary::{self, Incident};
@@ -78,11 +78,11 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
     let Worker { rays, next_rays, shadows, media, color: pixels, seen, stats, .. } = worker;
     let hits = Hits::new(&rays.primitive[lanes.clone()]);
     let count = (rays.len() - at).min(S::f32s::LEN);
-    for lane in (0..count).filter(|lane| hits.active >> lane & 1 == 0) {
-        let light = rays.weight.get(at + lane) * frame.scene.render.background;
-        add(pixels, rays.sample[at + lane], light);
-    }
+    let missed = |lane: usize| rays.weight.get(at + lane) * frame.scene.render.background;
     if hits.active == 0 {
+        for lane in 0..count {
+            add(pixels, rays.sample[at + lane], missed(lane));
+        }
         return;
     }
     let (origin, direction) = (rays.origin.load::<S>(simd, at), rays.direction.load::<S>(simd, at));
@@ -110,8 +110,10 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
     };
     let ambient = V3::splat(simd, frame.ambient) * materials.triple(simd, frame, Row::Ambient);
     let own = lit.weight * (lit.opacity * ambient * color + emission);
-    for lane in hits.lanes() {
-        add(pixels, rays.sample[at + lane], own.lane(lane));
+    // In queue order, hits and misses alike: rays of one sample may lie in one packet or in two, as wide as it is.
+    for lane in 0..count {
+        let light = if hits.active >> lane & 1 == 0 { missed(lane) } else { own.lane(lane) };
+        add(pixels, rays.sample[at + lane], light);
     }
 
     let samples = &rays.sample[lanes];
@@ -119,15 +121,9 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
         let Some((reaching, to_light, distance, gain)) = light_gain(simd, frame, light, &lit, &materials, &hits) else {
             continue;
         };
-        if frame.plan.shadows {
-            let start = leave::start::<S>(lit.position, lit.facing, lit.margin, to_light);
-            let reach = leave::reach::<S>(distance, lit.margin);
-            queue.push_lanes::<S>(reaching, start, to_light, reach, gain, samples);
-        } else {
-            for lane in bits(reaching.to_bitmask()) {
-                add(pixels, samples[lane], gain.lane(lane));
-            }
-        }
+        let start = leave::start::<S>(lit.position, lit.facing, lit.margin, to_light);
+        let reach = leave::reach::<S>(distance, lit.margin);
+        queue.push_lanes::<S>(reaching, start, to_light, reach, gain, samples);
     }
 
     if level < frame.plan.depth && (frame.plan.reflections || frame.plan.refractions) {
@@ -178,7 +174,7 @@ impl<S: Simd> View<S> {
 
 /// Adds light to a sample.
 #[inline(always)]
-fn add(pixels: &mut [[f32; 3]], sample: u32, light: Vec3) {
+pub(super) fn add(pixels: &mut [[f32; 3]], sample: u32, light: Vec3) {
     let pixel = &mut pixels[sample as usize];
     *pixel = [pixel[0] + light.x, pixel[1] + light.y, pixel[2] + light.z];
 }
