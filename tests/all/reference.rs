@@ -67,7 +67,8 @@ fn check(name: &str, scene: &Scene, settings: &Settings, differing: f64) -> Vec<
         let name = format!("{name}, camera {}", camera.name);
         println!("{name}: {:.3} % differ", found.differing * 100.0);
         if let Some(first) = found.wrong.first() {
-            problems.push(format!("{name}: {} pixels differ without a reason, the first is {first}", found.wrong.len()));
+            problems
+                .push(format!("{name}: {} pixels differ without a reason, the first is {first}", found.wrong.len()));
         }
         if found.differing > differing {
             problems.push(format!("{name}: {:.2} % of the pixels differ", found.differing * 100.0));
@@ -80,7 +81,8 @@ fn check(name: &str, scene: &Scene, settings: &Settings, differing: f64) -> Vec<
 fn write_picture(folder: &Folder) {
     let texels: Vec<u8> = (0..6 * 4 * 3).map(|i: u32| (i * 67 % 251) as u8).collect();
     let path = folder.write("picture.png", "");
-    image::save_buffer_with_format(path, &texels, 6, 4, image::ExtendedColorType::Rgb8, image::ImageFormat::Png).unwrap();
+    image::save_buffer_with_format(path, &texels, 6, 4, image::ExtendedColorType::Rgb8, image::ImageFormat::Png)
+        .unwrap();
 }
 
 #[test]
