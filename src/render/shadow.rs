@@ -3,8 +3,8 @@
 use super::frame::Frame;
 use super::gather;
 use super::queue::ShadowQueue;
-use super::stats::CacheCounts;
 use super::shade::add;
+use super::stats::CacheCounts;
 use super::tile::Worker;
 use crate::geometry::{AnyHit, NO_PRIMITIVE, NextCrossing, Opaque, Packet, PrimitiveIndex, Search, Stack, Visitor};
 use crate::math::V3;

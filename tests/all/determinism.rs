@@ -60,7 +60,11 @@ fn a_cancelled_frame_leaves_nothing_behind() {
         scratch.cancel.reset();
         let stats = render_frame(scene, &camera, &settings, &mut scratch, &mut used);
         assert!(stats.completed, "after {stopped:?}");
-        assert_eq!(stats.pixels.traced, u64::from(SIZE.0 * SIZE.1), "counts of the cancelled frame are not carried over");
+        assert_eq!(
+            stats.pixels.traced,
+            u64::from(SIZE.0 * SIZE.1),
+            "counts of the cancelled frame are not carried over"
+        );
         assert_eq!(fresh.difference(&PictureBits::of(&used)), None);
     }
 }

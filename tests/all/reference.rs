@@ -89,7 +89,8 @@ fn check(name: &str, scene: &Scene, settings: &Settings, calm: f64, differing: f
 fn write_picture(folder: &Folder) {
     let texels: Vec<u8> = (0..6 * 4 * 3).map(|i: u32| (i * 67 % 251) as u8).collect();
     let path = folder.write("picture.png", "");
-    image::save_buffer_with_format(path, &texels, 6, 4, image::ExtendedColorType::Rgb8, image::ImageFormat::Png).unwrap();
+    image::save_buffer_with_format(path, &texels, 6, 4, image::ExtendedColorType::Rgb8, image::ImageFormat::Png)
+        .unwrap();
 }
 
 #[test]

@@ -95,11 +95,17 @@ fn any_shape(random: &mut Random, center: DVec3) -> Value {
     match random.below(8) {
         0 => json!({ "type": "sphere", "center": triple(center), "radius": size }),
         1 => json!({ "type": "cylinder", "base": from, "top": to, "radius": size * part, "capped": capped }),
-        2 => json!({ "type": "cone", "base": from, "top": to, "radius": size, "radius_top": size * part, "capped": capped }),
+        2 => {
+            json!({ "type": "cone", "base": from, "top": to, "radius": size, "radius_top": size * part, "capped": capped })
+        }
         3 => json!({ "type": "cone", "base": from, "top": to, "radius": size * part, "capped": capped }),
-        4 => json!({ "type": "box", "min": triple(center - size * part), "max": triple(center + DVec3::new(size, part, size)) }),
+        4 => {
+            json!({ "type": "box", "min": triple(center - size * part), "max": triple(center + DVec3::new(size, part, size)) })
+        }
         5 => json!({ "type": "disk", "center": triple(center), "normal": triple(a), "radius": size }),
-        6 => json!({ "type": "rectangle", "corner": triple(center), "edge_u": triple(a * size), "edge_v": triple(b * part) }),
+        6 => {
+            json!({ "type": "rectangle", "corner": triple(center), "edge_u": triple(a * size), "edge_v": triple(b * part) })
+        }
         _ => json!({ "type": "triangle", "vertices": [from, to, triple(center + b * size)],
                      "normals": [triple(a + b * 3.0), triple(b - a * 0.5), triple(c * 0.2 + b)] }),
     }
@@ -113,7 +119,8 @@ fn with_material(mut object: Value, material: &str) -> Value {
 /// Eighty objects of all types and materials over a floor, made `scale` times as large, then moved.
 fn crowd(scale: f64, shift: DVec3) -> Value {
     let mut random = Random::new(7);
-    let mut children = vec![json!({ "type": "plane", "point": [0, -3, 0], "normal": [0.1, 1, 0], "material": "tiles" })];
+    let mut children =
+        vec![json!({ "type": "plane", "point": [0, -3, 0], "normal": [0.1, 1, 0], "material": "tiles" })];
     for _ in 0..80 {
         let center = random.point(3.0);
         let material = MATERIALS[random.below(MATERIALS.len())];
@@ -127,7 +134,8 @@ fn crowd(scale: f64, shift: DVec3) -> Value {
           "inner_angle": 20, "outer_angle": 40, "intensity": 0.5 }
     ]);
     let camera = json!({ "position": place(DVec3::new(0.0, 1.0, 8.0)), "look_at": place(DVec3::ZERO), "fov": 50 });
-    let group = json!({ "type": "group", "transform": { "translate": triple(shift), "scale": scale }, "children": children });
+    let group =
+        json!({ "type": "group", "transform": { "translate": triple(shift), "scale": scale }, "children": children });
     scene(&camera, 5, &lights, &[group])
 }
 

@@ -66,7 +66,9 @@ fn every_pixel_is_counted_once_and_drawn_whatever_the_size() {
     let scene = ball_on_floor();
     let camera = scene.cameras[0].camera;
     let mut scratch = Scratch::new();
-    for size in [(1, 1), (2, 3), (3, 2), (65, 64), (64, 65), (63, 129), (64, 64), (1, 200), (200, 1), (66, 17), (129, 67)] {
+    for size in
+        [(1, 1), (2, 3), (3, 2), (65, 64), (64, 65), (63, 129), (64, 64), (1, 200), (200, 1), (66, 17), (129, 67)]
+    {
         let full = render(&scene, &camera, &Settings::exact(), size);
         for settings in both_fills().chain([Settings::exact()]) {
             let mut film = film(size);

@@ -78,7 +78,8 @@ fn metallic_roughness() -> Value {
         { "type": "point", "position": [-4, 6, 5], "intensity": 3 },
         { "type": "spot", "position": [4, 4, 4], "direction": [-1, -1, -1], "intensity": 60, "falloff": "inverse_square" }
     ]);
-    let ball = |x: f64, material: &str| json!({ "type": "sphere", "center": [x, 0, 0], "radius": 0.9, "material": material });
+    let ball =
+        |x: f64, material: &str| json!({ "type": "sphere", "center": [x, 0, 0], "radius": 0.9, "material": material });
     let plane = json!({ "type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0], "material": "floor" });
     let objects = json!([plane, ball(-3.0, "gold"), ball(-1.0, "steel"), ball(1.0, "plastic"), ball(3.0, "chalk")]);
     scene(&camera([0.5, 1.0, 8.0], [0.0, 0.0, 0.0]), &materials, &lights, &objects)
@@ -86,7 +87,8 @@ fn metallic_roughness() -> Value {
 
 /// Without a light of its own; the mirror shows the shadows of the light at the eye.
 fn headlight() -> Value {
-    let materials = json!({ "mirror": { "color": 0, "reflectivity": 0.9, "specular": 0 }, "blue": { "color": [0.2, 0.3, 0.9] } });
+    let materials =
+        json!({ "mirror": { "color": 0, "reflectivity": 0.9, "specular": 0 }, "blue": { "color": [0.2, 0.3, 0.9] } });
     let objects = json!([
         { "type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0], "material": "floor" },
         { "type": "rectangle", "corner": [-3, -1, -3], "edge_u": [6, 0, -1], "edge_v": [0, 4, 0], "material": "mirror" },
@@ -244,7 +246,8 @@ fn near_and_far() -> Value {
 
 /// A glass body whose mesh carries its own normals.
 fn smooth_glass() -> Value {
-    let corners = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
+    let corners =
+        [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
     let faces = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
     let materials = json!({ "glass": { "transparency": 1, "ior": 1.3, "ambient": 0, "diffuse": 0, "specular": 0.4, "absorption": [0.1, 0.2, 0.4] } });
     // Normals that lean a little from the faces' own towards the corners.

@@ -97,8 +97,7 @@ impl Primitive {
                 let (across, step) = (origin - middle - axis * height, direction - axis * climb);
                 let (wall, wall_step) = (radius + slope * height, slope * climb);
                 let a = step.length_squared() - wall_step * wall_step;
-                let roots =
-                    quadratic(a, across.dot(step) - wall * wall_step, across.length_squared() - wall * wall);
+                let roots = quadratic(a, across.dot(step) - wall * wall_step, across.length_squared() - wall * wall);
                 roots.into_iter().filter(|t| (height + climb * t).abs() <= half_height).collect()
             }
             Shape::Plane { normal, distance } => {
@@ -122,7 +121,8 @@ impl Primitive {
             Shape::Triangle { corners: [a, b, c], winding, normals, uvs } => {
                 let cross = (b - a).cross(c - a);
                 let geometric = cross.normalize() * winding;
-                let weight = |from: DVec3, to: DVec3| (to - from).cross(position - from).dot(cross) / cross.length_squared();
+                let weight =
+                    |from: DVec3, to: DVec3| (to - from).cross(position - from).dot(cross) / cross.length_squared();
                 let [u, v, w] = [weight(b, c), weight(c, a), weight(a, b)];
                 let smooth = normals.map(|[a, b, c]| (a * u + b * v + c * w).normalize());
                 let shading = smooth.map_or(geometric, |n| if n.dot(geometric) < 0.0 { -n } else { n });

@@ -81,9 +81,9 @@ impl<'a> Tracer<'a> {
             .filter(|&object| {
                 let own = self.primitives.iter().filter(|p| p.object == object);
                 let ahead = own.flat_map(|p| p.hits(eye, direction).into_iter().map(move |t| (p, t)));
-                let leaves = ahead.filter(|(_, t)| *t > 0.0).map(|(p, t)| {
-                    if p.surface(eye, direction, t).geometric.dot(direction) > 0.0 { 1 } else { -1 }
-                });
+                let leaves = ahead
+                    .filter(|(_, t)| *t > 0.0)
+                    .map(|(p, t)| if p.surface(eye, direction, t).geometric.dot(direction) > 0.0 { 1 } else { -1 });
                 leaves.sum::<i32>() > 0
             })
             .collect();
@@ -98,7 +98,8 @@ impl<'a> Tracer<'a> {
 
     /// The least (t, object, primitive) within the ray's range.
     fn closest(&self, ray: &Ray) -> Option<(f64, &Primitive)> {
-        let hits = self.primitives.iter().flat_map(|p| p.hits(ray.origin, ray.direction).into_iter().map(move |t| (t, p)));
+        let hits =
+            self.primitives.iter().flat_map(|p| p.hits(ray.origin, ray.direction).into_iter().map(move |t| (t, p)));
         hits.filter(|(t, _)| *t > ray.range.0 && *t <= ray.range.1).reduce(|a, b| if b.0 < a.0 { b } else { a })
     }
 
@@ -185,7 +186,8 @@ impl<'a> Tracer<'a> {
         let ambient = match material.model {
             Model::Phong { ambient, .. } | Model::MetallicRoughness { ambient, .. } => ambient.as_dvec3(),
         };
-        let scene_ambient = if self.scene.lights.is_empty() { DVec3::splat(0.1) } else { self.scene.render.ambient.as_dvec3() };
+        let scene_ambient =
+            if self.scene.lights.is_empty() { DVec3::splat(0.1) } else { self.scene.render.ambient.as_dvec3() };
         let mut out = opacity * scene_ambient * ambient * color;
         for light in &self.lights {
             let (to_light, distance) = match light.kind {
@@ -234,7 +236,8 @@ impl<'a> Tracer<'a> {
                 if t <= MARGIN || t >= distance - MARGIN {
                     continue;
                 }
-                let (object, material) = (&self.scene.objects[primitive.object as usize], self.material(primitive.object));
+                let (object, material) =
+                    (&self.scene.objects[primitive.object as usize], self.material(primitive.object));
                 note(path, u64::from(primitive.object) << 8 | 3);
                 if !material.is_transparent() {
                     return DVec3::ZERO;
