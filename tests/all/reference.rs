@@ -1,7 +1,7 @@
 //! `full` against a plain tracer in double precision, written from the contract's words alone.
 //!
-//! Where a pixel and its neighbours two pixels around follow the same path (the same objects, lights and bodies met), the
-//! colours must agree. Elsewhere an edge may fall on either side of a pixel's centre; how many pixels that concerns is bounded.
+//! Colours and depths must agree. Where they do not, an edge, a shadow's border or the like must pass so close to the
+//! pixel's centre that f32 may see the other side of it; how many pixels that concerns is bounded.
 
 mod scenes;
 mod shapes;
@@ -11,7 +11,7 @@ mod tracer;
 use crate::picture_bits::render;
 use crate::stress;
 use crate::temporary::{Folder, load_text};
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use raywalk::scene::{Camera, LoadOptions, Scene};
 use raywalk::settings::{Settings, Visibility};
 use tracer::{Seen, Tracer};
@@ -19,64 +19,55 @@ use tracer::{Seen, Tracer};
 const SIZE: (u32, u32) = (64, 48);
 /// How far linear colours may be apart, in parts of the larger of 1 and the colour.
 const TOLERANCE: f64 = 1e-3;
-/// How far a pixel's neighbours lie that must follow the same path.
-const AWAY: u32 = 2;
+/// How near, in pixels, a ray that follows another path must pass for a difference to be excused.
+const NEAR: f64 = 0.02;
 
 /// What a comparison found.
-#[derive(Debug)]
 struct Comparison {
-    /// Share of pixels whose neighbourhood follows one path.
-    calm: f64,
-    /// Of these, pixels that differ.
-    wrong: Vec<String>,
-    /// Share of all pixels that differ.
+    /// Share of pixels that differ.
     differing: f64,
+    /// Of these, the ones that no edge explains.
+    wrong: Vec<String>,
 }
 
 fn compare(scene: &Scene, camera: Camera, settings: &Settings) -> Comparison {
-    let (width, height) = SIZE;
     let film = render(scene, &camera, settings, SIZE);
     let tracer = Tracer::new(scene, camera, settings);
-    let pixels: Vec<(u32, u32)> = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).collect();
-    let expected: Vec<Seen> = pixels.iter().map(|&pixel| tracer.pixel(pixel, SIZE)).collect();
-    let seen = |x: u32, y: u32| &expected[(y * width + x) as usize];
-    let (mut calm, mut wrong, mut differing) = (0, Vec::new(), 0);
-    for &(x, y) in &pixels {
-        let own = seen(x, y);
+    let (mut wrong, mut differing) = (Vec::new(), 0);
+    for (x, y) in pixels() {
+        let center = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let expected = tracer.look(center, SIZE);
         let found = Vec3::from(film.color(x, y)).as_dvec3();
-        let scale = own.color.abs().max(DVec3::ONE);
         let depth = f64::from(film.depth(x, y).unwrap());
-        let far = own.depth != depth && (own.depth - depth).abs() > TOLERANCE * own.depth.max(1.0);
-        let differs = far || ((found - own.color) / scale).abs().max_element() > TOLERANCE || !found.is_finite();
-        differing += usize::from(differs);
-        let columns = x.saturating_sub(AWAY)..(x + AWAY + 1).min(width);
-        let is_calm = columns
-            .flat_map(|x| (y.saturating_sub(AWAY)..(y + AWAY + 1).min(height)).map(move |y| (x, y)))
-            .all(|(x, y)| seen(x, y).path == own.path);
-        if is_calm {
-            calm += 1;
-            if differs {
-                wrong.push(format!("({x}, {y}): {found} at {depth} instead of {} at {}", own.color, own.depth));
-            }
+        let far = expected.depth != depth && (expected.depth - depth).abs() > TOLERANCE * expected.depth.max(1.0);
+        let off = (found - expected.color).abs() / expected.color.abs().max(DVec3::ONE);
+        if !far && off.max_element() <= TOLERANCE {
+            continue;
+        }
+        differing += 1;
+        let around = (0..12).map(|i| DVec2::from_angle(f64::from(i)) * NEAR * f64::from(1 + i % 3) / 3.0);
+        if around.map(|by| tracer.look(center + by, SIZE)).all(|near| near.path == expected.path) {
+            let Seen { color, depth: expected, .. } = expected;
+            wrong.push(format!("({x}, {y}): {found} at {depth} instead of {color} at {expected}"));
         }
     }
-    let share = |count: usize| count as f64 / pixels.len() as f64;
-    Comparison { calm: share(calm), wrong, differing: share(differing) }
+    Comparison { differing: f64::from(differing) / pixels().count() as f64, wrong }
 }
 
-/// Compares all cameras of a scene. Of the calm pixels none may differ; `calm` of them there must be, and of all pixels
-/// no more than `differing` may differ.
-fn check(name: &str, scene: &Scene, settings: &Settings, calm: f64, differing: f64) -> Vec<String> {
+fn pixels() -> impl Iterator<Item = (u32, u32)> {
+    (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| (x, y)))
+}
+
+/// Compares all cameras of a scene. No more than the share `differing` of the pixels may differ, and all of these for a
+/// reason.
+fn check(name: &str, scene: &Scene, settings: &Settings, differing: f64) -> Vec<String> {
     let mut problems = Vec::new();
     for camera in &scene.cameras {
         let found = compare(scene, camera.camera, settings);
         let name = format!("{name}, camera {}", camera.name);
-        println!("{name}: {:.1} % calm, {:.3} % differ", found.calm * 100.0, found.differing * 100.0);
+        println!("{name}: {:.3} % differ", found.differing * 100.0);
         if let Some(first) = found.wrong.first() {
-            problems.push(format!("{name}: {} calm pixels differ, the first is {first}", found.wrong.len()));
-        }
-        if found.calm < calm {
-            problems.push(format!("{name}: only {:.1} % of the pixels are calm", found.calm * 100.0));
+            problems.push(format!("{name}: {} pixels differ without a reason, the first is {first}", found.wrong.len()));
         }
         if found.differing > differing {
             problems.push(format!("{name}: {:.2} % of the pixels differ", found.differing * 100.0));
@@ -101,7 +92,7 @@ fn full_draws_what_the_contract_says() {
     for (name, text) in scenes::all() {
         let scene = folder.load(text.to_string(), &LoadOptions { strict: true, ..LoadOptions::default() });
         let scene = scene.unwrap_or_else(|error| panic!("{name}: {error}"));
-        problems.extend(check(name, &scene, &Settings::exact(), 0.25, 0.01));
+        problems.extend(check(name, &scene, &Settings::exact(), 0.004));
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
@@ -115,7 +106,7 @@ fn switches_and_the_depth_limit_do_what_they_say() {
     let scene = folder.load(text.to_string(), &LoadOptions::default()).unwrap();
     for depth in [1, 2, 3, 8] {
         let settings = Settings { depth: Some(depth), ..Settings::exact() };
-        problems.extend(check(&format!("depth {depth}"), &scene, &settings, 0.25, 0.01));
+        problems.extend(check(&format!("depth {depth}"), &scene, &settings, 0.004));
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
@@ -125,7 +116,8 @@ fn crowds_of_everything_agree_but_for_few_pixels() {
     let mut problems = Vec::new();
     for (name, scene) in stress::scenes() {
         if ["crowd", "only a headlight", "many lights"].contains(&name.as_str()) {
-            problems.extend(check(&name, &scene, &Settings::exact(), 0.0, 0.02));
+            // Glass in glass shows many edges a pixel.
+            problems.extend(check(&name, &scene, &Settings::exact(), 0.02));
         }
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));
@@ -151,9 +143,8 @@ fn a_group_draws_what_its_objects_draw_in_their_places() {
         let scene = load_text(text).unwrap();
         render(&scene, &scene.cameras[0].camera, &Settings::exact(), SIZE)
     });
-    let pixels = (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| (x, y)));
     let apart = |&(x, y): &(u32, u32)| !Vec3::from(a.color(x, y)).abs_diff_eq(Vec3::from(b.color(x, y)), 1e-4);
-    let count = pixels.filter(apart).count();
+    let count = pixels().filter(apart).count();
     assert!(count <= 3, "{count} pixels differ");
 }
 

@@ -3,7 +3,7 @@
 
 use super::shapes::{Primitive, Surface, primitives};
 use super::surface_color::look_up;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use raywalk::scene::light::{Falloff, LightKind};
 use raywalk::scene::material::Model;
 use raywalk::scene::{Camera, Light, Material, Scene};
@@ -57,16 +57,17 @@ impl<'a> Tracer<'a> {
         Self { scene, camera, lights, primitives: primitives(&scene.geometry), depth }
     }
 
-    pub fn pixel(&self, (x, y): (u32, u32), (width, height): (u32, u32)) -> Seen {
+    /// What is seen at a point of a picture, in pixels from its upper left corner.
+    pub fn look(&self, at: DVec2, (width, height): (u32, u32)) -> Seen {
         let Camera { eye, look_at, up, fov, near, far } = self.camera;
-        let (x, y, width, height) = (f64::from(x), f64::from(y), f64::from(width), f64::from(height));
+        let (width, height) = (f64::from(width), f64::from(height));
         let f = (look_at.as_dvec3() - eye.as_dvec3()).normalize();
         let r = f.cross(up.as_dvec3()).normalize();
         let u = r.cross(f);
         let tangent = (f64::from(fov).to_radians() / 2.0).tan();
         let direction = f
-            + r * ((2.0 * (x + 0.5) / width - 1.0) * tangent * width / height)
-            + u * ((1.0 - 2.0 * (y + 0.5) / height) * tangent);
+            + r * ((2.0 * at.x / width - 1.0) * tangent * width / height)
+            + u * ((1.0 - 2.0 * at.y / height) * tangent);
         let ray = Ray { origin: eye.as_dvec3(), direction: direction.normalize(), range: (near.into(), far.into()) };
         let mut path = 0;
         let color = self.trace(ray, self.depth, &self.around_eye(), &mut path);
