@@ -1,6 +1,6 @@
 //! Laws that every type of primitive keeps, whatever its size and place; they walk the list of types.
 
-use super::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
+use super::primitive::{Cone, Disk, HIT_PADDING, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use super::*;
 use crate::math::{SimdToken, V3, dispatch};
 use crate::settings::SimdLevel;
@@ -164,8 +164,8 @@ fn bounds_contain_hits() {
                 }
                 count += 1;
                 let point = ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(t);
-                // Two thirds of what boxes are widened by when they are searched.
-                let padding = f64::from(ray.origin.abs().max_element() + geometry.reach()) * 2.7e-6;
+                // A fifth more, for the roundings of both.
+                let padding = f64::from((ray.origin.abs().max_element() + geometry.reach()) * HIT_PADDING) * 1.2;
                 let (below, above) = (bounds.min.as_dvec3() - point, point - bounds.max.as_dvec3());
                 let by = below.max(above).max_element() / padding;
                 if by > 1.0 {
@@ -177,7 +177,7 @@ fn bounds_contain_hits() {
                 }
             }
         }
-        assert!(kind == PrimitiveKind::Plane || count > 5000, "{kind:?}: only {count} rays hit");
+        assert!(kind == PrimitiveKind::Plane || count > 2000, "{kind:?}: only {count} rays hit");
         assert!(outside.is_empty(), "{kind:?}: {} of {count} hits, such as {}", outside.len(), outside[0]);
     }
 }
@@ -204,7 +204,7 @@ fn surfaces_lie_where_rays_hit_and_have_unit_normals() {
                     ray.origin.abs().max_element() + geometry.reach().max(center.as_vec3().abs().max_element()),
                 ) + f64::from(t);
                 let apart = (position.as_dvec3() - point).length() / scale;
-                assert!(apart < 4e-6, "{kind:?} {ray:?} at {t}: {position} is {apart:e} from {point}");
+                assert!(apart < 2e-5, "{kind:?} {ray:?} at {t}: {position} is {apart:e} from {point}");
             }
         }
     }
@@ -318,10 +318,10 @@ fn closed_meshes_do_not_leak() {
 #[test]
 fn a_heap_of_equal_primitives_is_searched_to_the_end() {
     for &kind in PrimitiveKind::ALL {
-        let shapes = vec![shape(kind, &mut Random(6), DVec3::ZERO, 1.0, 0.7); 20_000];
+        let shapes = vec![shape(kind, &mut Random(6), DVec3::ZERO, 1.0, 0.9); 2000];
         let geometry = geometry(shapes);
         let mut random = Random(7);
-        let rays = rays_around(&mut random, DVec3::ZERO, 1.0, 32);
+        let rays = rays_around(&mut random, DVec3::ZERO, 1.0, 64);
         for use_bvh in [false, true] {
             let found = dispatch!(SimdToken::best(), simd => closest(simd, &geometry, use_bvh, &rays));
             assert!(found.iter().any(|hit| hit.1 == 0), "{kind:?}: nothing was hit");
