@@ -5,6 +5,7 @@ mod cli;
 mod imports;
 mod our_scenes;
 mod overlay;
+mod readme;
 mod scene_errors;
 mod scene_files;
 mod scene_loading;
