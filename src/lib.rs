@@ -23,6 +23,22 @@
 //!                                          │ tiles: visibility ─► shade ─► shadows ─► secondary rays, level by level
 //!                                          └─► FrameStats ─► overlay, --stats
 //! ```
+//!
+//! A frame in a few lines:
+//!
+//! ```
+//! use raywalk::render::{Film, Planes, Scratch, render_frame};
+//! use raywalk::scene::{self, LoadOptions};
+//! use raywalk::settings::Settings;
+//!
+//! let scene = scene::builtin(&LoadOptions::default())?;
+//! let camera = scene.cameras[0].camera;
+//! let (mut scratch, mut film) = (Scratch::new(), Film::new(64, 36, Planes::default()));
+//! let stats = render_frame(&scene, &camera, &Settings::exact(), &mut scratch, &mut film);
+//! assert_eq!(stats.rays.primary, 64 * 36);
+//! assert!(film.rgba().iter().any(|&byte| byte > 128));
+//! # Ok::<(), raywalk::scene::SceneError>(())
+//! ```
 
 pub mod settings;
 

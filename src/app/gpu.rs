@@ -58,6 +58,7 @@ impl Gpu {
                 Err(reason) => reasons.push(one_line(&reason)),
             }
         }
+        reasons.dedup();
         Err(reasons.join("; "))
     }
 
@@ -189,6 +190,8 @@ fn configuration(capabilities: &wgpu::SurfaceCapabilities) -> Option<wgpu::Surfa
     })
 }
 
+/// A message of wgpu's without its line breaks and its empty list of details.
 fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    line.trim_end_matches(": {}").to_owned()
 }

@@ -29,6 +29,16 @@ impl Aabb {
         points.into_iter().fold(Self::EMPTY, |b, p| Self { min: b.min.min(p), max: b.max.max(p) })
     }
 
+    /// The least box around a disk with a unit normal.
+    ///
+    /// Along each axis it reaches as far as the sine of the angle between axis and normal. That comes from the two
+    /// other components: 1 - cosine² of a disk that is all but aligned with the axis is lost to rounding.
+    pub fn of_disk(center: Vec3, normal: Vec3, radius: f32) -> Self {
+        let squared = normal * normal;
+        let sines = Vec3::new(squared.y + squared.z, squared.x + squared.z, squared.x + squared.y).map(f32::sqrt);
+        Self { min: center - sines * radius, max: center + sines * radius }
+    }
+
     /// The least box that holds both.
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
@@ -52,5 +62,18 @@ impl Aabb {
     /// Edge lengths.
     pub fn size(&self) -> Vec3 {
         self.max - self.min
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_disk_that_is_all_but_aligned_is_not_flat() {
+        let normal = Vec3::new(3e-4, 1.0, 0.0).normalize();
+        let half = Aabb::of_disk(Vec3::ZERO, normal, 2.0).max;
+        assert!(half.abs_diff_eq(Vec3::new(2.0, 6e-4, 2.0), 1e-7), "{half}");
+        assert_eq!(Aabb::of_disk(Vec3::ONE, Vec3::Z, 1.0), Aabb { min: Vec3::Z, max: Vec3::new(2.0, 2.0, 1.0) });
     }
 }

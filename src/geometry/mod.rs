@@ -6,6 +6,8 @@
 pub mod aabb;
 pub mod block;
 pub mod bvh;
+#[cfg(test)]
+mod laws;
 pub mod packet;
 pub mod primitive;
 pub mod shape;

@@ -103,7 +103,8 @@ pub(super) struct Frame<'a> {
     pub sphere_terms: SphereTerms<'a>,
     /// Transparent bodies around the eye, outermost first.
     pub around_eye: &'a [u32],
-    /// Whether the film keeps the normals of what it sees.
+    /// Whether the film keeps anything of what it sees, and normals among it.
+    pub keeps_planes: bool,
     pub keeps_normals: bool,
     pub encoder: Encoder,
 }
@@ -158,6 +159,7 @@ pub fn render_frame(
             SphereCache::Thesis => SphereTerms::Thesis(sphere_terms),
         },
         around_eye,
+        keeps_planes: film.planes().any(),
         keeps_normals: film.planes().normal,
         encoder: Encoder::new(settings),
     };

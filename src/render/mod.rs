@@ -4,6 +4,7 @@
 //! then level by level `shade` adds local light and queues rays, `shadow` and `trace` trace them, `secondary` follows
 //! mirrors and glass; `resolve` encodes the result.
 
+mod brdf;
 pub mod film;
 mod frame;
 mod gather;

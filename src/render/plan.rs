@@ -44,14 +44,16 @@ impl Plan {
         let textured = |source: &ColorSource| matches!(source, ColorSource::Texture(_));
         let depth = settings.depth.unwrap_or(scene.render.max_depth);
         let refractions = settings.refractions && depth > 1 && !tables.opaque.is_empty();
+        let reflections = settings.reflections && depth > 1 && tables.materials.iter().any(|m| m.secondary);
         Self {
             tree: settings.bvh && scene.geometry.bvh.is_some(),
             sphere_cache: if has(PrimitiveKind::Sphere) { settings.sphere_cache } else { SphereCache::Off },
-            shadows: settings.shadows && !scene.lights.is_empty(),
+            // A light at the eye casts no shadow that the eye sees itself, but mirrors and glass show them.
+            shadows: settings.shadows && (!scene.headlight || reflections || refractions),
             coloured_shadows: !tables.opaque.is_empty(),
-            reflections: settings.reflections && depth > 1 && tables.materials.iter().any(|m| m.secondary),
+            reflections,
             refractions,
-            media: refractions && !tables.transparent_bodies.is_empty(),
+            media: !tables.transparent_bodies.is_empty(),
             textures: scene.materials.iter().any(|m| textured(&m.color) || textured(&m.emission)),
             vertex_attributes: !scene.geometry.attributes.is_empty(),
             metallic_roughness: tables.materials.iter().any(|m| m.metallic_roughness),
@@ -76,7 +78,7 @@ impl Plan {
             ),
             say(
                 self.shadows,
-                format!("shadows: on, {} light(s) cast them", scene.lights.len()),
+                format!("shadows: on, {} light(s) cast them", scene.lights.len().max(1)),
                 if scene.headlight {
                     "shadows: off, the only light is at the eye"
                 } else {

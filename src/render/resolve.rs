@@ -4,8 +4,9 @@ use crate::settings::{Settings, ToneMap};
 use std::sync::LazyLock;
 
 /// Turns linear colours into sRGB bytes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Encoder {
+    table: &'static SrgbTable,
     gain: f32,
     tone_map: ToneMap,
 }
@@ -13,7 +14,7 @@ pub struct Encoder {
 impl Encoder {
     /// The encoder that the settings ask for.
     pub fn new(settings: &Settings) -> Self {
-        Self { gain: libm::exp2f(settings.exposure), tone_map: settings.tone_map }
+        Self { table: &SRGB, gain: libm::exp2f(settings.exposure), tone_map: settings.tone_map }
     }
 
     /// Encodes a linear colour.
@@ -24,7 +25,10 @@ impl Encoder {
             ToneMap::None => exposed,
             ToneMap::Neutral => neutral(exposed),
         }
-        .map(linear_to_srgb)
+        .map(
+            #[inline(always)]
+            |linear| self.table.encode(linear),
+        )
     }
 }
 
@@ -45,7 +49,8 @@ fn neutral([r, g, b]: [f32; 3]) -> [f32; 3] {
     shifted.map(|c| c * (new_peak / peak) * (1.0 - share) + new_peak * share)
 }
 
-/// Buckets of the first guess of [`linear_to_srgb`].
+/// Buckets of the first guess of [`SrgbTable::encode`]. Bytes change at most every 1 / (12.92 * 255) = 1 / 3295, so
+/// that a bucket holds at most one change.
 const BUCKETS: usize = 4096;
 
 /// For each byte the least linear value that encodes to it, and for each bucket of linear values its least byte.
@@ -57,7 +62,8 @@ struct SrgbTable {
 static SRGB: LazyLock<SrgbTable> = LazyLock::new(|| {
     let least_linear = std::array::from_fn(|byte| match byte {
         0 => 0.0,
-        256 => f32::INFINITY,
+        // Nothing is brighter than the last byte, not even infinity.
+        256 => f32::NAN,
         _ => {
             let encoded = (byte as f64 - 0.5) / 255.0;
             let linear = if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) };
@@ -75,19 +81,15 @@ static SRGB: LazyLock<SrgbTable> = LazyLock::new(|| {
     SrgbTable { least_linear, first_guess }
 });
 
-/// Clamps to [0, 1] and encodes to the nearest sRGB byte (IEC 61966-2-1). NaN becomes 0.
-#[inline]
-fn linear_to_srgb(linear: f32) -> u8 {
-    let table = &*SRGB;
-    if linear >= 1.0 {
-        return 255;
+impl SrgbTable {
+    /// Clamps to [0, 1] and encodes to the nearest sRGB byte (IEC 61966-2-1). NaN becomes 0.
+    #[inline(always)]
+    fn encode(&self, linear: f32) -> u8 {
+        // A float to integer cast saturates, and takes NaN to 0.
+        let bucket = ((linear * BUCKETS as f32) as usize).min(BUCKETS - 1);
+        let byte = self.first_guess[bucket];
+        byte + u8::from(linear >= self.least_linear[usize::from(byte) + 1])
     }
-    // A float to integer cast saturates, and takes NaN to 0.
-    let mut byte = usize::from(table.first_guess[((linear * BUCKETS as f32) as usize).min(BUCKETS - 1)]);
-    while linear >= table.least_linear[byte + 1] {
-        byte += 1;
-    }
-    byte as u8
 }
 
 #[cfg(test)]
@@ -101,10 +103,10 @@ mod tests {
             let exact = f64::from(linear);
             let encoded =
                 if exact <= 0.003_130_8 { exact * 12.92 } else { 1.055 * exact.powf(1.0 / 2.4) - 0.055 } * 255.0;
-            let byte = f64::from(linear_to_srgb(linear));
+            let byte = f64::from(SRGB.encode(linear));
             assert!((byte - encoded).abs() < 0.5001, "{linear}: {byte} for {encoded}");
         }
-        assert_eq!([-1.0, f32::NAN, 0.0, 2.0, f32::INFINITY].map(linear_to_srgb), [0, 0, 0, 255, 255]);
+        assert_eq!([-1.0, f32::NAN, 0.0, 2.0, f32::INFINITY].map(|linear| SRGB.encode(linear)), [0, 0, 0, 255, 255]);
     }
 
     #[test]

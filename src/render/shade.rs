@@ -1,9 +1,8 @@
 //! Shading one level of a tile's paths: local light at each hit, shadow rays for it, and the rays that follow.
-//!
-//! Lambert (1760), Blinn-Phong (Blinn, SIGGRAPH 1977) and glTF's metallic-roughness (Khronos, glTF 2.0 appendix B).
 
+use super::brdf::Reflectance;
 use super::frame::Frame;
-use super::gather::{Hits, Materials, Surfaces, bits, surfaces};
+use super::gather::{Hits, Materials, Surfaces, surfaces};
 use super::leave;
 use super::queue::RayQueue;
 use super::secondary::{self, Incident};
@@ -11,7 +10,6 @@ use super::tables::Row;
 use super::tile::{Seen, Worker};
 use crate::geometry::NO_PRIMITIVE;
 use crate::math::V3;
-use crate::math::power::pow;
 use crate::scene::light::{Falloff, LightKind};
 use crate::scene::{Light, Scene};
 use fearless_simd::Simd;
@@ -33,7 +31,6 @@ struct Lit<S: Simd> {
     normal: V3<S::f32s>,
     to_viewer: V3<S::f32s>,
     weight: V3<S::f32s>,
-    color: V3<S::f32s>,
     opacity: V3<S::f32s>,
 }
 
@@ -78,11 +75,11 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
     let Worker { rays, next_rays, shadows, media, color: pixels, seen, stats, .. } = worker;
     let hits = Hits::new(&rays.primitive[lanes.clone()]);
     let count = (rays.len() - at).min(S::f32s::LEN);
-    for lane in (0..count).filter(|lane| hits.active >> lane & 1 == 0) {
-        let light = rays.weight.get(at + lane) * frame.scene.render.background;
-        add(pixels, rays.sample[at + lane], light);
-    }
+    let missed = |lane: usize| rays.weight.get(at + lane) * frame.scene.render.background;
     if hits.active == 0 {
+        for lane in 0..count {
+            add(pixels, rays.sample[at + lane], missed(lane));
+        }
         return;
     }
     let (origin, direction) = (rays.origin.load::<S>(simd, at), rays.direction.load::<S>(simd, at));
@@ -105,29 +102,25 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
         normal: view.normal,
         to_viewer: -direction,
         weight: rays.weight.load(simd, at),
-        color,
         opacity: materials.triple(simd, frame, Row::Opacity),
     };
     let ambient = V3::splat(simd, frame.ambient) * materials.triple(simd, frame, Row::Ambient);
     let own = lit.weight * (lit.opacity * ambient * color + emission);
-    for lane in hits.lanes() {
-        add(pixels, rays.sample[at + lane], own.lane(lane));
+    // In queue order, hits and misses alike: rays of one sample may lie in one packet or in two, as wide as it is.
+    for lane in 0..count {
+        let light = if hits.active >> lane & 1 == 0 { missed(lane) } else { own.lane(lane) };
+        add(pixels, rays.sample[at + lane], light);
     }
 
+    let reflectance = Reflectance::gather(simd, frame, &hits, &materials, color, lit.opacity);
     let samples = &rays.sample[lanes];
     for (light, queue) in frame.lights.iter().zip(shadows) {
-        let Some((reaching, to_light, distance, gain)) = light_gain(simd, frame, light, &lit, &materials, &hits) else {
+        let Some((reaching, to_light, distance, gain)) = light_gain(simd, light, &lit, &reflectance) else {
             continue;
         };
-        if frame.plan.shadows {
-            let start = leave::start::<S>(lit.position, lit.facing, lit.margin, to_light);
-            let reach = leave::reach::<S>(distance, lit.margin);
-            queue.push_lanes::<S>(reaching, start, to_light, reach, gain, samples);
-        } else {
-            for lane in bits(reaching.to_bitmask()) {
-                add(pixels, samples[lane], gain.lane(lane));
-            }
-        }
+        let start = leave::start::<S>(lit.position, lit.facing, lit.margin, to_light);
+        let reach = leave::reach::<S>(distance, lit.margin);
+        queue.push_lanes::<S>(reaching, start, to_light, reach, gain, samples);
     }
 
     if level < frame.plan.depth && (frame.plan.reflections || frame.plan.refractions) {
@@ -178,7 +171,7 @@ impl<S: Simd> View<S> {
 
 /// Adds light to a sample.
 #[inline(always)]
-fn add(pixels: &mut [[f32; 3]], sample: u32, light: Vec3) {
+pub(super) fn add(pixels: &mut [[f32; 3]], sample: u32, light: Vec3) {
     let pixel = &mut pixels[sample as usize];
     *pixel = [pixel[0] + light.x, pixel[1] + light.y, pixel[2] + light.z];
 }
@@ -189,11 +182,9 @@ fn add(pixels: &mut [[f32; 3]], sample: u32, light: Vec3) {
 #[allow(clippy::type_complexity, reason = "four lane vectors that are taken apart at once")]
 fn light_gain<S: Simd>(
     simd: S,
-    frame: &Frame<'_>,
     light: &Light,
     lit: &Lit<S>,
-    materials: &Materials,
-    hits: &Hits<'_>,
+    reflectance: &Reflectance<S>,
 ) -> Option<(Mask<S>, V3<S::f32s>, S::f32s, V3<S::f32s>)> {
     let zero = S::f32s::splat(simd, 0.0);
     let (to_light, distance) = match light.kind {
@@ -222,82 +213,8 @@ fn light_gain<S: Simd>(
         arriving = arriving.scale(S::f32s::splat(simd, 1.0) / (distance * distance));
     }
 
-    let mut reflected = V3::all(zero);
-    let is_metallic = |m: usize| frame.tables.materials[m].metallic_roughness;
-    if materials.any(hits, |m| !is_metallic(m)) {
-        reflected = phong(simd, frame, lit, materials, hits, to_light, n_dot_l);
-    }
-    if frame.plan.metallic_roughness && materials.any(hits, is_metallic) {
-        let roughness = materials.row(simd, frame, Row::Roughness as usize);
-        let metallic = materials.row(simd, frame, Row::Metallic as usize);
-        let other = metallic_roughness(simd, lit, roughness, metallic, to_light, n_dot_l);
-        reflected = V3::select(roughness.simd_ge(zero), other, reflected);
-    }
+    let reflected = reflectance.towards(simd, lit.normal, lit.to_viewer, to_light, n_dot_l);
     Some((reaching, to_light, distance, lit.weight * arriving * reflected))
-}
-
-/// The value where it is above 0, else 0. What is not a number (the half vector of a light straight behind) is 0 too.
-#[inline(always)]
-fn positive<S: Simd>(value: S::f32s) -> S::f32s {
-    let zero = S::f32s::splat(value.token(), 0.0);
-    value.simd_gt(zero).select(value, zero)
-}
-
-/// Lambert and Blinn-Phong: (1-t) diffuse color (n·l) + specular (n·h)^shininess.
-#[inline(always)]
-fn phong<S: Simd>(
-    simd: S,
-    frame: &Frame<'_>,
-    lit: &Lit<S>,
-    materials: &Materials,
-    hits: &Hits<'_>,
-    to_light: V3<S::f32s>,
-    n_dot_l: S::f32s,
-) -> V3<S::f32s> {
-    let diffuse = materials.triple(simd, frame, Row::Diffuse);
-    let matte = (lit.opacity * diffuse * lit.color).scale(n_dot_l);
-    if !materials.any(hits, |m| frame.tables.materials[m].shiny) {
-        return matte;
-    }
-    let half = (to_light + lit.to_viewer).normalize();
-    let n_dot_h = positive::<S>(lit.normal.dot(half));
-    let highlight = pow::<S, S::f32s>(n_dot_h, materials.row(simd, frame, Row::Shininess as usize));
-    matte + materials.triple(simd, frame, Row::Specular).scale(highlight)
-}
-
-/// The specification's metallic-roughness BRDF times n·l: Lambert under a Trowbridge-Reitz highlight with the
-/// height-correlated Smith term and Schlick's Fresnel.
-#[inline(always)]
-fn metallic_roughness<S: Simd>(
-    simd: S,
-    lit: &Lit<S>,
-    roughness: S::f32s,
-    metallic: S::f32s,
-    to_light: V3<S::f32s>,
-    n_dot_l: S::f32s,
-) -> V3<S::f32s> {
-    let one = S::f32s::splat(simd, 1.0);
-    let half = (to_light + lit.to_viewer).normalize();
-    let n_dot_v = positive::<S>(lit.normal.dot(lit.to_viewer));
-    let n_dot_h = positive::<S>(lit.normal.dot(half));
-    let v_dot_h = positive::<S>(lit.to_viewer.dot(half));
-
-    let alpha = roughness * roughness;
-    // A perfect mirror's highlight of a point light has no width: keep it visible and finite.
-    let alpha2 = (alpha * alpha).max(1e-6);
-    let d = n_dot_h * n_dot_h * (alpha2 - one) + one;
-    let distribution = alpha2 / (d * d * std::f32::consts::PI);
-    let smith_l = n_dot_l * (n_dot_v * n_dot_v * (one - alpha2) + alpha2).sqrt();
-    let smith_v = n_dot_v * (n_dot_l * n_dot_l * (one - alpha2) + alpha2).sqrt();
-    let visibility = S::f32s::splat(simd, 0.5) / (smith_l + smith_v).max(1e-7);
-
-    let x = one - v_dot_h;
-    let x2 = x * x;
-    let schlick = x2 * x2 * x;
-    let f0 = V3::all((one - metallic) * 0.04) + lit.color.scale(metallic);
-    let fresnel = f0 + (V3::all(one) - f0).scale(schlick);
-    let diffuse = lit.opacity * lit.color.scale((one - metallic) * std::f32::consts::FRAC_1_PI);
-    ((V3::all(one) - fresnel) * diffuse + fresnel.scale(distribution * visibility)).scale(n_dot_l)
 }
 
 /// glTF's KHR_lights_punctual: the square of a linear ramp between the cosines of the two half-angles.

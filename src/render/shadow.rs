@@ -3,6 +3,7 @@
 use super::frame::Frame;
 use super::gather;
 use super::queue::ShadowQueue;
+use super::shade::add;
 use super::stats::CacheCounts;
 use super::tile::Worker;
 use crate::geometry::{AnyHit, NO_PRIMITIVE, NextCrossing, Opaque, Packet, PrimitiveIndex, Search, Stack, Visitor};
@@ -11,15 +12,31 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 /// Traces the waiting shadow rays light by light and adds what arrives to the samples, in queue order.
-pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
+pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &mut Worker) {
     let Worker { shadows, last_blocker, stack, color, stats, .. } = worker;
+    // Nothing lies between the eye and what it sees.
+    let lit_by_eye = frame.scene.headlight && level == 1;
     for (queue, last_blocker) in shadows.iter_mut().zip(last_blocker) {
         if queue.len() == 0 {
+            continue;
+        }
+        if lit_by_eye || !frame.plan.shadows {
+            queue.add_gains(color);
+            queue.clear();
             continue;
         }
         stats.rays.shadow += queue.len() as u64;
         resolve_light(simd, frame, queue, last_blocker, stack, color, &mut stats.shadow_cache);
         queue.clear();
+    }
+}
+
+impl ShadowQueue {
+    /// Adds every gain as if nothing were in the way.
+    fn add_gains(&self, color: &mut [[f32; 3]]) {
+        for at in 0..self.len() {
+            add(color, self.sample[at], self.gain.get(at));
+        }
     }
 }
 
@@ -62,8 +79,7 @@ fn resolve_light<S: Simd>(
                 }
                 let blocked = visitor.blocked.to_bitmask();
                 for lane in (0..lanes).filter(|lane| blocked >> lane & 1 == 0) {
-                    let pixel = &mut color[queue.sample[at + lane] as usize];
-                    *pixel = [pixel[0] + gain.x[lane], pixel[1] + gain.y[lane], pixel[2] + gain.z[lane]];
+                    add(color, queue.sample[at + lane], gain.lane(lane));
                 }
             }
         },

@@ -149,7 +149,7 @@ impl Worker {
             self.stats.stages_ms.shade += milliseconds_since(start);
 
             let start = Instant::now();
-            shadow::resolve(simd, frame, self);
+            shadow::resolve(simd, frame, level, self);
             self.stats.stages_ms.shadow += milliseconds_since(start);
 
             if self.next_rays.len() == 0 {

@@ -1,7 +1,7 @@
 //! The overlay, driven like a user would: no window, no GPU.
 
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use raywalk::app::history::History;
 use raywalk::app::overlay::{self, Change, Shown, View, theme};
 use raywalk::geometry::Geometry;
@@ -143,6 +143,21 @@ fn a_preset_sets_everything() {
         harness.run();
         assert_eq!(harness.state().settings, (preset.settings)(), "{}", preset.name);
     }
+}
+
+#[test]
+fn a_preset_is_marked_even_where_the_scene_or_the_machine_decides() {
+    let mut panel = Panel::new();
+    panel.settings = Settings { depth: Some(panel.scene.render.max_depth), threads: 3, ..Settings::balanced() };
+    let marked = |harness: &Harness<'_, Panel>, name| {
+        harness.get_by_label(name).accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
+    };
+    let mut harness = panel.harness();
+    assert!(marked(&harness, "balanced") && !marked(&harness, "exact"));
+    harness.get_by_label("exact").click();
+    harness.run();
+    assert!(marked(&harness, "exact") && !marked(&harness, "balanced"));
+    assert_eq!(harness.state().settings.threads, 3, "the machine's share stays");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use super::history::History;
 use super::input::HELP;
 use crate::render::FrameStats;
 use crate::scene::Scene;
-use crate::settings::{PRESETS, Settings};
+use crate::settings::{PRESETS, Preset, Settings};
 use egui::{CollapsingHeader, RichText, Ui};
 
 /// Width of the panel's contents in points.
@@ -160,13 +160,21 @@ fn presets(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Preset").color(theme::WEAK));
         for preset in PRESETS {
-            let settings = (preset.settings)();
+            let settings = of_preset(preset, view);
             let selected = *view.settings == settings;
             if ui.selectable_label(selected, preset.name).on_hover_text(preset.help).clicked() && !selected {
                 changes.push(Change::Settings(settings));
             }
         }
     });
+}
+
+/// The settings of a preset, as this scene is drawn by this machine.
+fn of_preset(preset: &Preset, view: &View<'_>) -> Settings {
+    let Settings { threads, simd, present, .. } = *view.settings;
+    // The depth "scene" and the scene's own number are the same.
+    let depth = view.settings.depth.filter(|depth| *depth == view.scene.render.max_depth);
+    Settings { threads, simd, present, depth, ..(preset.settings)() }
 }
 
 fn scene(ui: &mut Ui, scene: &Scene) {

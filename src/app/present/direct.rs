@@ -4,7 +4,7 @@ use super::PaintJob;
 use super::raster::{Raster, over};
 use crate::app::gpu::Gpu;
 use crate::render::Film;
-use egui::{Color32, TexturesDelta};
+use egui::TexturesDelta;
 
 /// The picture on its way to the surface.
 #[derive(Debug)]
@@ -53,50 +53,58 @@ impl Direct {
 
     /// Fills `bytes` in the surface's order; black before the first frame.
     fn join(&mut self, width: u32, height: u32) {
+        // The order is chosen out here, so that the loops over pixels know it.
+        if self.swaps {
+            self.join_ordered(width, height, swapped);
+        } else {
+            self.join_ordered(width, height, |rgba| rgba);
+        }
+    }
+
+    fn join_ordered(&mut self, width: u32, height: u32, order: impl Fn(Pixel) -> Pixel) {
         self.bytes.resize(width as usize * height as usize * 4, 0);
         let overlay = self.overlay.used().filter(|_| self.overlay.size() == [width, height]);
-        for (y, row) in (0..height).zip(self.bytes.chunks_exact_mut(4 * width as usize)) {
+        for (y, row) in (0..height).zip(self.bytes.as_chunks_mut().0.chunks_exact_mut(width as usize)) {
             match &self.frame {
-                Some(film) => copy_row(row, film, y, width, height, self.swaps),
-                None => row.fill(0),
+                Some(film) => copy_row(row, film, y, height, |[r, g, b, _]| order([r, g, b, 255])),
+                None => row.fill([0; 4]),
             }
             let Some([left, top, covered, rows]) = overlay else { continue };
             if (top..top + rows).contains(&y) {
-                let (left, right) = (left as usize, (left + covered) as usize);
-                lay_over(&mut row[4 * left..4 * right], &self.overlay.row(y)[left..right], self.swaps);
+                let covered = left as usize..(left + covered) as usize;
+                for (pixel, color) in row[covered.clone()].iter_mut().zip(&self.overlay.row(y)[covered]) {
+                    *pixel = over(order(color.to_array()), *pixel);
+                }
             }
         }
     }
 }
 
+/// One pixel, four channels with alpha last.
+type Pixel = [u8; 4];
+
 /// One row of the picture; a film of another size is stretched, each pixel from the nearest one.
-fn copy_row(row: &mut [u8], film: &Film, y: u32, width: u32, height: u32, swaps: bool) {
-    let scaled = |at: u32, from: u32, to: u32| (u64::from(at) * u64::from(from) / u64::from(to)) as usize;
-    let stride = 4 * film.width() as usize;
-    let source = &film.rgba()[scaled(y, film.height(), height) * stride..][..stride];
-    if film.width() == width {
-        for (pixel, source) in row.chunks_exact_mut(4).zip(source.chunks_exact(4)) {
-            pixel.copy_from_slice(&ordered([source[0], source[1], source[2], 255], swaps));
+fn copy_row(row: &mut [Pixel], film: &Film, y: u32, height: u32, order: impl Fn(Pixel) -> Pixel) {
+    let scaled = |at: usize, from: u32, to: usize| at * from as usize / to;
+    let film_row = scaled(y as usize, film.height(), height as usize);
+    let source = &film.rgba().as_chunks().0[film_row * film.width() as usize..][..film.width() as usize];
+    if source.len() == row.len() {
+        for (pixel, &source) in row.iter_mut().zip(source) {
+            *pixel = order(source);
         }
     } else {
-        for (x, pixel) in (0..width).zip(row.chunks_exact_mut(4)) {
-            let source = &source[4 * scaled(x, film.width(), width)..][..4];
-            pixel.copy_from_slice(&ordered([source[0], source[1], source[2], 255], swaps));
+        let width = row.len();
+        for (x, pixel) in row.iter_mut().enumerate() {
+            *pixel = order(source[scaled(x, film.width(), width)]);
         }
     }
 }
 
-fn lay_over(row: &mut [u8], overlay: &[Color32], swaps: bool) {
-    for (pixel, &color) in row.chunks_exact_mut(4).zip(overlay) {
-        let color = ordered(color.to_array(), swaps);
-        let color = Color32::from_rgba_premultiplied(color[0], color[1], color[2], color[3]);
-        let below = Color32::from_rgba_premultiplied(pixel[0], pixel[1], pixel[2], pixel[3]);
-        pixel.copy_from_slice(&over(color, below).to_array());
-    }
-}
-
-fn ordered([r, g, b, a]: [u8; 4], swaps: bool) -> [u8; 4] {
-    if swaps { [b, g, r, a] } else { [r, g, b, a] }
+/// With red and blue exchanged. By shifts of a whole word: of these a compiler without byte shuffles at hand still
+/// makes lanes, a quarter of the time of moving single bytes.
+fn swapped(rgba: Pixel) -> Pixel {
+    let word = u32::from_le_bytes(rgba);
+    ((word & 0xff00_ff00) | ((word >> 16) & 0xff) | ((word & 0xff) << 16)).to_le_bytes()
 }
 
 #[cfg(test)]
@@ -104,7 +112,7 @@ mod tests {
     use super::*;
     use crate::render::Planes;
     use egui::epaint::{ClippedPrimitive, ImageDelta, Mesh, Primitive, TextureId, textures::TextureOptions};
-    use egui::{ColorImage, Rect, pos2, vec2};
+    use egui::{Color32, ColorImage, Rect, pos2, vec2};
 
     #[test]
     fn frame_and_overlay_are_joined_in_the_surfaces_order() {
@@ -122,7 +130,7 @@ mod tests {
             direct.set_overlay(&job, &mut textures);
             direct.join(6, 4);
             let pixel = |x: usize, y: usize| &direct.bytes[4 * (6 * y + x)..][..4];
-            assert_eq!(pixel(2, 2), ordered([200, 20, 10, 255], swaps));
+            assert_eq!(pixel(2, 2), if swaps { [10, 20, 200, 255] } else { [200, 20, 10, 255] });
             assert_eq!(pixel(0, 0), [0, 0, 0, 255], "a new film is black");
             assert_eq!(pixel(3, 2), [0, 0, 0, 255]);
             direct.join(12, 8);

@@ -166,10 +166,10 @@ impl Target<'_> {
             let pixels = &mut self.pixels[row as usize * self.stride..][span.start as usize..span.end as usize];
             match flat {
                 Some(color) if color.a() == 255 => pixels.fill(color),
-                Some(color) => pixels.iter_mut().for_each(|pixel| *pixel = over(color, *pixel)),
+                Some(color) => pixels.iter_mut().for_each(|pixel| lay(color, pixel)),
                 None => {
                     for (x, pixel) in span.zip(pixels) {
-                        *pixel = over(shade(at(x as f32 + 0.5, y), texture), *pixel);
+                        lay(shade(at(x as f32 + 0.5, y), texture), pixel);
                     }
                 }
             }
@@ -202,16 +202,27 @@ fn shade(varying: Varying, texture: &ColorImage) -> Color32 {
     Color32::from_rgba_premultiplied(r, g, b, a)
 }
 
-/// Premultiplied `color` over `below`.
-pub fn over(color: Color32, below: Color32) -> Color32 {
-    let through = 255 - u32::from(color.a());
-    let (color, below) = (color.to_array(), below.to_array());
-    let [r, g, b, a]: [u8; 4] = std::array::from_fn(|i| {
+fn lay(color: Color32, pixel: &mut Color32) {
+    let [r, g, b, a] = over(color.to_array(), pixel.to_array());
+    *pixel = Color32::from_rgba_premultiplied(r, g, b, a);
+}
+
+/// Premultiplied `color` over `below`, any order of channels with alpha last.
+pub fn over(color: [u8; 4], below: [u8; 4]) -> [u8; 4] {
+    // Two channels at a time in the halves of a word: half the time of one by one, which matters as it is done for
+    // every pixel under the panel in every frame.
+    const LOW_BYTES: u32 = 0x00ff_00ff;
+    let through = 255 - u32::from(color[3]);
+    let (color, below) = (u32::from_le_bytes(color), u32::from_le_bytes(below));
+    let pair = |color: u32, below: u32| {
         // Exact rounding of a division by 255.
-        let product = u32::from(below[i]) * through + 128;
-        color[i].saturating_add(((product + (product >> 8)) >> 8) as u8)
-    });
-    Color32::from_rgba_premultiplied(r, g, b, a)
+        let product = (below & LOW_BYTES) * through + 0x0080_0080;
+        let quotient = ((product + ((product >> 8) & LOW_BYTES)) >> 8) & LOW_BYTES;
+        let sum = quotient + (color & LOW_BYTES);
+        // Colours that only add light have no alpha: what exceeds a byte stays at its end.
+        (sum | (((sum >> 8) & 0x0001_0001) * 255)) & LOW_BYTES
+    };
+    (pair(color, below) | (pair(color >> 8, below >> 8) << 8)).to_le_bytes()
 }
 
 #[cfg(test)]
@@ -329,9 +340,10 @@ mod tests {
         for below in 0..=255_u8 {
             for alpha in 0..=255_u8 {
                 let expected = (f64::from(below) * f64::from(255 - alpha) / 255.0).round() as u8;
-                let seen = over(Color32::from_rgba_premultiplied(0, 0, 0, alpha), Color32::from_gray(below));
-                assert_eq!(seen.r(), expected, "{below} under {alpha}");
+                let seen = over([0, alpha, 0, alpha], [below; 4]);
+                assert_eq!(seen[..3], [expected, expected.saturating_add(alpha), expected], "{below} under {alpha}");
             }
         }
+        assert_eq!(over([9, 200, 255, 0], [250, 100, 1, 255]), [255, 255, 255, 255], "light that is only added");
     }
 }

@@ -34,11 +34,7 @@ impl Kernel<9> for Cone {
     fn bounds(fields: &[f32; 9]) -> Aabb {
         let (middle, axis) = (Vec3::from_slice(&fields[0..3]), Vec3::from_slice(&fields[3..6]));
         let [half_height, radius, slope] = [fields[6], fields[7], fields[8]];
-        let across = (Vec3::ONE - axis * axis).max(Vec3::ZERO).map(f32::sqrt);
-        let end = |height: f32| {
-            let (center, half) = (middle + axis * height, across * (radius + slope * height));
-            Aabb { min: center - half, max: center + half }
-        };
+        let end = |height: f32| Aabb::of_disk(middle + axis * height, axis, radius + slope * height);
         end(-half_height).union(end(half_height))
     }
 

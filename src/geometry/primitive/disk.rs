@@ -19,9 +19,7 @@ impl Disk {
 
 impl Kernel<7> for Disk {
     fn bounds(fields: &[f32; 7]) -> Aabb {
-        let (center, normal) = (Vec3::from_slice(&fields[0..3]), Vec3::from_slice(&fields[3..6]));
-        let half = (Vec3::ONE - normal * normal).max(Vec3::ZERO).map(f32::sqrt) * fields[6];
-        Aabb { min: center - half, max: center + half }
+        Aabb::of_disk(Vec3::from_slice(&fields[0..3]), Vec3::from_slice(&fields[3..6]), fields[6])
     }
 
     #[inline(always)]

@@ -144,7 +144,7 @@ fn fill_colors<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, cells: &mut Cel
                 && colors_match(cell, &worker.color, frame.settings.match_threshold);
             if matches {
                 worker.stats.pixels.interpolated +=
-                    interpolate(cell, pass, &mut cells.done, (&mut worker.color, &mut worker.seen));
+                    interpolate(cell, pass, &mut cells.done, (&mut worker.color, &mut worker.seen), frame.keeps_planes);
             } else {
                 Cells::split(&mut cells.next, cell);
             }
@@ -166,28 +166,44 @@ fn colors_match(cell: &Cell, color: &[[f32; 3]], threshold: f32) -> bool {
 }
 
 /// Interpolates between the corners of a cell; returns how many of the tile's pixels it filled.
-fn interpolate(cell: &Cell, pass: &Pass, done: &mut [bool], (color, seen): (&mut [[f32; 3]], &mut [Seen])) -> u64 {
-    let at = |[x, y]: [u16; 2]| sample_at(x.into(), y.into()) as usize;
-    let corners = cell.corners().map(at);
-    let (colors, depths) = (corners.map(|i| color[i]), corners.map(|i| seen[i].t));
-    let (normals, primitive) = (corners.map(|i| seen[i].normal), seen[corners[0]].primitive);
-    let span = |a: u16, b: u16| f32::from((b - a).max(1));
+fn interpolate(
+    cell: &Cell,
+    pass: &Pass,
+    done: &mut [bool],
+    (color, seen): (&mut [[f32; 3]], &mut [Seen]),
+    keeps_planes: bool,
+) -> u64 {
+    let corners = cell.corners().map(|[x, y]| sample_at(x.into(), y.into()) as usize);
+    let colors = corners.map(|corner| color[corner]);
+    let views = corners.map(|corner| seen[corner]);
+    let step = |from: u16, to: u16| 1.0 / f32::from((to - from).max(1));
+    let (across, down) = (step(cell.left, cell.right), step(cell.top, cell.bottom));
     let mut filled = 0;
     for [x, y] in cell.pixels(pass) {
-        if std::mem::replace(&mut done[at([x, y])], true) {
+        let sample = sample_at(x.into(), y.into()) as usize;
+        if std::mem::replace(&mut done[sample], true) {
             continue;
         }
-        let u = f32::from(x - cell.left) / span(cell.left, cell.right);
-        let v = f32::from(y - cell.top) / span(cell.top, cell.bottom);
-        let weights = [(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v];
-        let blend = |values: [f32; 4]| (0..4).map(|i| weights[i] * values[i]).sum::<f32>();
-        let t = if primitive == NO_PRIMITIVE { f32::INFINITY } else { blend(depths) };
-        color[at([x, y])] = std::array::from_fn(|c| blend(colors.map(|color| color[c])));
-        seen[at([x, y])] =
-            Seen { primitive, t, normal: std::array::from_fn(|c| blend(normals.map(|normal| normal[c]))) };
+        let (u, v) = (f32::from(x - cell.left) * across, f32::from(y - cell.top) * down);
+        color[sample] = std::array::from_fn(|c| bilinear(colors.map(|color| color[c]), u, v));
+        // Corners of finer cells nearby ask what this pixel sees; where, only planes ask.
+        seen[sample].primitive = views[0].primitive;
+        if keeps_planes {
+            seen[sample].t = match views[0].primitive {
+                NO_PRIMITIVE => f32::INFINITY,
+                _ => bilinear(views.map(|view| view.t), u, v),
+            };
+            seen[sample].normal = std::array::from_fn(|c| bilinear(views.map(|view| view.normal[c]), u, v));
+        }
         filled += 1;
     }
     filled
+}
+
+/// Between the values at the corners left-top, right-top, left-bottom and right-bottom of a unit square.
+fn bilinear([a, b, c, d]: [f32; 4], u: f32, v: f32) -> f32 {
+    let (left, right) = (a + (c - a) * v, b + (d - b) * v);
+    left + (right - left) * u
 }
 
 /// `--fill hit`: where corners see the same primitive, the pixels between them are tested against it alone; all are

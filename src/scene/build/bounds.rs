@@ -2,18 +2,17 @@
 
 use crate::geometry::{Aabb, Shape};
 use crate::scene::Object;
-use glam::Vec3;
 
 /// The bounds of a shape in the world; infinite for a plane.
 pub fn shape_bounds(shape: &Shape) -> Aabb {
     match *shape {
-        Shape::Sphere { center, radius } => around(center, Vec3::splat(radius)),
+        Shape::Sphere { center, radius } => Aabb { min: center - radius, max: center + radius },
         Shape::Plane { .. } => Aabb::INFINITE,
         Shape::Triangle { vertices } => Aabb::from_points(vertices),
-        Shape::Disk { center, normal, radius } => around(center, disk_extent(normal, radius)),
+        Shape::Disk { center, normal, radius } => Aabb::of_disk(center, normal, radius),
         Shape::Cone { base, top, radius_base, radius_top } => {
             let axis = (top - base).normalize_or_zero();
-            around(base, disk_extent(axis, radius_base)).union(around(top, disk_extent(axis, radius_top)))
+            Aabb::of_disk(base, axis, radius_base).union(Aabb::of_disk(top, axis, radius_top))
         }
     }
 }
@@ -23,18 +22,10 @@ pub fn finite_bounds(objects: &[Object]) -> Aabb {
     objects.iter().map(|o| o.bounds).filter(Aabb::is_finite).fold(Aabb::EMPTY, Aabb::union)
 }
 
-fn around(center: Vec3, extent: Vec3) -> Aabb {
-    Aabb { min: center - extent, max: center + extent }
-}
-
-/// Half of the size of a disk's bounds: along each axis the sine of the angle between it and the normal.
-fn disk_extent(normal: Vec3, radius: f32) -> Vec3 {
-    (Vec3::ONE - normal * normal).max(Vec3::ZERO).map(f32::sqrt) * radius
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
 
     #[test]
     fn a_lying_disk_is_flat_and_a_tilted_one_is_not() {

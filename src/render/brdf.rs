@@ -1,0 +1,146 @@
+//! What surfaces reflect of direct light: Lambert (1760), Blinn-Phong (Blinn, SIGGRAPH 1977) and glTF's
+//! metallic-roughness (Khronos, glTF 2.0 appendix B).
+
+use super::frame::Frame;
+use super::gather::{Hits, Materials};
+use super::tables::Row;
+use crate::math::V3;
+use crate::math::power::pow;
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+
+/// The reflection models of a packet's hits, gathered once for all lights.
+pub(super) struct Reflectance<S: Simd> {
+    phong: Option<Phong<S>>,
+    metallic_roughness: Option<MetallicRoughness<S>>,
+}
+
+/// (1-t) diffuse color (n·l) + specular (n·h)^shininess.
+struct Phong<S: Simd> {
+    /// (1-t) diffuse color.
+    matte: V3<S::f32s>,
+    /// Colour and exponent of the highlight, if any lane has one.
+    highlight: Option<(V3<S::f32s>, S::f32s)>,
+}
+
+/// Lambert under a Trowbridge-Reitz highlight with the height-correlated Smith term and Schlick's Fresnel.
+struct MetallicRoughness<S: Simd> {
+    color: V3<S::f32s>,
+    opacity: V3<S::f32s>,
+    metallic: S::f32s,
+    /// Negative in lanes that are not of this model.
+    roughness: S::f32s,
+}
+
+impl<S: Simd> Reflectance<S> {
+    #[inline(always)]
+    pub fn gather(
+        simd: S,
+        frame: &Frame<'_>,
+        hits: &Hits<'_>,
+        materials: &Materials,
+        color: V3<S::f32s>,
+        opacity: V3<S::f32s>,
+    ) -> Self {
+        let table = &frame.tables.materials;
+        let some_metallic = frame.plan.metallic_roughness && materials.any(hits, |m| table[m].metallic_roughness);
+        let some_phong = !some_metallic || materials.any(hits, |m| !table[m].metallic_roughness);
+        let mut phong = None;
+        if some_phong {
+            let matte = opacity * materials.triple(simd, frame, Row::Diffuse) * color;
+            let mut highlight = None;
+            if materials.any(hits, |m| table[m].shiny) {
+                let shininess = materials.row(simd, frame, Row::Shininess as usize);
+                highlight = Some((materials.triple(simd, frame, Row::Specular), shininess));
+            }
+            phong = Some(Phong { matte, highlight });
+        }
+        let mut metallic_roughness = None;
+        if some_metallic {
+            let metallic = materials.row(simd, frame, Row::Metallic as usize);
+            let roughness = materials.row(simd, frame, Row::Roughness as usize);
+            metallic_roughness = Some(MetallicRoughness { color, opacity, metallic, roughness });
+        }
+        Self { phong, metallic_roughness }
+    }
+
+    /// The share of a light's colour that goes to the viewer. All directions are unit vectors away from the surface.
+    #[inline(always)]
+    pub fn towards(
+        &self,
+        simd: S,
+        normal: V3<S::f32s>,
+        to_viewer: V3<S::f32s>,
+        to_light: V3<S::f32s>,
+        n_dot_l: S::f32s,
+    ) -> V3<S::f32s> {
+        let mut reflected = match &self.phong {
+            Some(phong) => phong.towards(normal, to_viewer, to_light, n_dot_l),
+            None => V3::all(S::f32s::splat(simd, 0.0)),
+        };
+        if let Some(model) = &self.metallic_roughness {
+            let own = model.roughness.simd_ge(S::f32s::splat(simd, 0.0));
+            reflected = V3::select(own, model.towards(simd, normal, to_viewer, to_light, n_dot_l), reflected);
+        }
+        reflected
+    }
+}
+
+impl<S: Simd> Phong<S> {
+    #[inline(always)]
+    fn towards(
+        &self,
+        normal: V3<S::f32s>,
+        to_viewer: V3<S::f32s>,
+        to_light: V3<S::f32s>,
+        n_dot_l: S::f32s,
+    ) -> V3<S::f32s> {
+        let matte = self.matte.scale(n_dot_l);
+        let Some((specular, shininess)) = self.highlight else { return matte };
+        let half = (to_light + to_viewer).normalize();
+        let n_dot_h = positive::<S>(normal.dot(half));
+        matte + specular.scale(pow::<S, S::f32s>(n_dot_h, shininess))
+    }
+}
+
+impl<S: Simd> MetallicRoughness<S> {
+    #[inline(always)]
+    fn towards(
+        &self,
+        simd: S,
+        normal: V3<S::f32s>,
+        to_viewer: V3<S::f32s>,
+        to_light: V3<S::f32s>,
+        n_dot_l: S::f32s,
+    ) -> V3<S::f32s> {
+        let one = S::f32s::splat(simd, 1.0);
+        let half = (to_light + to_viewer).normalize();
+        let n_dot_v = positive::<S>(normal.dot(to_viewer));
+        let n_dot_h = positive::<S>(normal.dot(half));
+        let v_dot_h = positive::<S>(to_viewer.dot(half));
+
+        let alpha = self.roughness * self.roughness;
+        // A perfect mirror's highlight of a point light has no width: keep it visible and finite.
+        let alpha2 = (alpha * alpha).max(1e-6);
+        let d = n_dot_h * n_dot_h * (alpha2 - one) + one;
+        let distribution = alpha2 / (d * d * std::f32::consts::PI);
+        let smith_l = n_dot_l * (n_dot_v * n_dot_v * (one - alpha2) + alpha2).sqrt();
+        let smith_v = n_dot_v * (n_dot_l * n_dot_l * (one - alpha2) + alpha2).sqrt();
+        let visibility = S::f32s::splat(simd, 0.5) / (smith_l + smith_v).max(1e-7);
+
+        let x = one - v_dot_h;
+        let x2 = x * x;
+        let schlick = x2 * x2 * x;
+        let f0 = V3::all((one - self.metallic) * 0.04) + self.color.scale(self.metallic);
+        let fresnel = f0 + (V3::all(one) - f0).scale(schlick);
+        let diffuse = self.opacity * self.color.scale((one - self.metallic) * std::f32::consts::FRAC_1_PI);
+        ((V3::all(one) - fresnel) * diffuse + fresnel.scale(distribution * visibility)).scale(n_dot_l)
+    }
+}
+
+/// The value where it is above 0, else 0. What is not a number (the half vector of a light straight behind) is 0 too.
+#[inline(always)]
+fn positive<S: Simd>(value: S::f32s) -> S::f32s {
+    let zero = S::f32s::splat(value.token(), 0.0);
+    value.simd_gt(zero).select(value, zero)
+}
