@@ -9,6 +9,7 @@ mod our_scenes;
 mod overlay;
 mod picture_bits;
 mod random;
+mod readme;
 mod reference;
 mod scene_errors;
 mod scene_files;
