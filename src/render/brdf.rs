@@ -121,7 +121,11 @@ impl<S: Simd> MetallicRoughness<S> {
         let alpha = self.roughness * self.roughness;
         // A perfect mirror's highlight of a point light has no width: keep it visible and finite.
         let alpha2 = (alpha * alpha).max(1e-6);
-        let d = n_dot_h * n_dot_h * (alpha2 - one) + one;
+        // (n·h)²(α²-1) + 1, but without its cancellation near the peak of a smooth surface's highlight.
+        let across = normal.cross(half);
+        let sine2 = across.dot(across);
+        let sine2 = sine2.simd_ge(0.0).select(sine2, one);
+        let d = n_dot_h * n_dot_h * alpha2 + sine2;
         let distribution = alpha2 / (d * d * std::f32::consts::PI);
         let smith_l = n_dot_l * (n_dot_v * n_dot_v * (one - alpha2) + alpha2).sqrt();
         let smith_v = n_dot_v * (n_dot_l * n_dot_l * (one - alpha2) + alpha2).sqrt();
