@@ -2,6 +2,7 @@
 
 use super::Geometry;
 use super::bvh::{Node, WIDTH};
+use super::primitive::HIT_PADDING;
 use crate::math::V3;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, mask32x8};
@@ -119,6 +120,8 @@ impl<S: Simd> Packet<S> {
         (to_min.min(to_max), to_min.max(to_max))
     }
 }
+
+const _: () = assert!(BOX_PADDING >= 2.0 * HIT_PADDING, "no box hides a hit, its own rounding included");
 
 const _: () = assert!(WIDTH == 8, "a node's boxes fill eight lanes");
 

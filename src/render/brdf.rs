@@ -2,7 +2,7 @@
 //! metallic-roughness (Khronos, glTF 2.0 appendix B).
 
 use super::frame::Frame;
-use super::gather::{Hits, Materials};
+use super::gather::Materials;
 use super::tables::Row;
 use crate::math::V3;
 use crate::math::power::pow;
@@ -37,19 +37,18 @@ impl<S: Simd> Reflectance<S> {
     pub fn gather(
         simd: S,
         frame: &Frame<'_>,
-        hits: &Hits<'_>,
-        materials: &Materials,
+        materials: &Materials<S>,
         color: V3<S::f32s>,
         opacity: V3<S::f32s>,
     ) -> Self {
         let table = &frame.tables.materials;
-        let some_metallic = frame.plan.metallic_roughness && materials.any(hits, |m| table[m].metallic_roughness);
-        let some_phong = !some_metallic || materials.any(hits, |m| !table[m].metallic_roughness);
+        let some_metallic = frame.plan.metallic_roughness && materials.any(|m| table[m].metallic_roughness);
+        let some_phong = !some_metallic || materials.any(|m| !table[m].metallic_roughness);
         let mut phong = None;
         if some_phong {
             let matte = opacity * materials.triple(simd, frame, Row::Diffuse) * color;
             let mut highlight = None;
-            if materials.any(hits, |m| table[m].shiny) {
+            if materials.any(|m| table[m].shiny) {
                 let shininess = materials.row(simd, frame, Row::Shininess as usize);
                 highlight = Some((materials.triple(simd, frame, Row::Specular), shininess));
             }

@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::queue::MOST_LANES;
 use super::tables::{ROWS, Row};
 use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, SurfacePoint, Triangle, for_each_primitive};
-use crate::geometry::{Block, Geometry, NO_PRIMITIVE, Packet, PrimitiveKind, Slot};
+use crate::geometry::{BLOCK, Block, Geometry, NO_PRIMITIVE, Packet, PrimitiveKind, Slot};
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -21,23 +21,28 @@ pub(super) struct Hits<'a> {
     pub primitives: &'a [u32],
     /// Bit set of the lanes that hit something.
     pub active: u64,
+    /// The primitive that all hitting lanes hit, if there is just one.
+    common: Option<u32>,
 }
 
 impl<'a> Hits<'a> {
-    pub fn new(primitives: &'a [u32]) -> Self {
-        let hit = |(lane, &p): (usize, &u32)| u64::from(p != NO_PRIMITIVE) << lane;
-        Self { primitives, active: primitives.iter().enumerate().map(hit).fold(0, |a, b| a | b) }
+    /// The hits of one packet's worth of primitives.
+    #[inline(always)]
+    pub fn new<S: Simd>(simd: S, primitives: &'a [u32]) -> Self {
+        let lanes = S::u32s::from_slice(simd, primitives);
+        let active = lanes.simd_ne(S::u32s::splat(simd, NO_PRIMITIVE)).to_bitmask();
+        let mut common = None;
+        if active != 0 {
+            let first = primitives[active.trailing_zeros() as usize];
+            let same = lanes.simd_eq(S::u32s::splat(simd, first)).to_bitmask();
+            common = (same == active).then_some(first);
+        }
+        Self { primitives, active, common }
     }
 
     /// Lanes that hit something, in order.
     pub fn lanes(&self) -> impl Iterator<Item = usize> + use<> {
         bits(self.active)
-    }
-
-    /// The primitive that all hitting lanes hit, if there is just one.
-    fn common(&self) -> Option<u32> {
-        let first = self.primitives[self.lanes().next()?];
-        self.lanes().all(|lane| self.primitives[lane] == first).then_some(first)
     }
 }
 
@@ -76,15 +81,14 @@ pub(super) fn surfaces<S: Simd>(
     let zero = S::f32s::splat(simd, 0.0);
     let blank = SurfacePoint { position: V3::all(zero), normal: V3::all(zero), scale: zero };
     let mut surfaces = Surfaces { point: blank, shading_normal: V3::all(zero), weights: [zero; 3] };
-    let common = hits.common();
+    let slots = slots_of(geometry, hits);
     let mut left = hits.active;
     while left != 0 {
         let first = left.trailing_zeros() as usize;
-        let kind = geometry.slots[hits.primitives[first] as usize].kind;
-        let slots = SlotsOf { geometry, hits, kind, common, first };
-        let lanes = slots.lanes(left);
+        let group = Group { geometry, hits, slots: &slots, kind: slots[first].kind, first };
+        let lanes = group.lanes(left);
         left &= !lanes;
-        let part = slots.surface(simd, origin, direction, t);
+        let part = group.surface(simd, origin, direction, t);
         if lanes == hits.active {
             surfaces.point = part;
         } else {
@@ -95,8 +99,8 @@ pub(super) fn surfaces<S: Simd>(
                 scale: mask.select(part.scale, surfaces.point.scale),
             };
         }
-        if frame.plan.vertex_attributes && kind == PrimitiveKind::Triangle {
-            let fields = slots.fields(simd, |g| &g.triangles);
+        if frame.plan.vertex_attributes && group.kind == PrimitiveKind::Triangle {
+            let fields = group.fields(simd, &geometry.triangles);
             surfaces.weights = Triangle::barycentric(&fields, origin, direction);
         }
     }
@@ -126,46 +130,57 @@ fn interpolate_normals<S: Simd>(geometry: &Geometry, hits: &Hits<'_>, surfaces: 
     }
 }
 
+/// Where the primitive of each lane lies; that of a hitting lane where there is no hit.
+#[inline(always)]
+fn slots_of(geometry: &Geometry, hits: &Hits<'_>) -> [Slot; MOST_LANES] {
+    let mut slots = [geometry.slots[hits.primitives[hits.active.trailing_zeros() as usize] as usize]; MOST_LANES];
+    if hits.common.is_none() {
+        for lane in hits.lanes() {
+            slots[lane] = geometry.slots[hits.primitives[lane] as usize];
+        }
+    }
+    slots
+}
+
 /// The lanes of a packet that hit one type of primitive.
-struct SlotsOf<'a> {
+struct Group<'a> {
     geometry: &'a Geometry,
     hits: &'a Hits<'a>,
+    slots: &'a [Slot; MOST_LANES],
     kind: PrimitiveKind,
-    common: Option<u32>,
     /// A lane that hit this type.
     first: usize,
 }
 
-impl SlotsOf<'_> {
-    fn slot(&self, lane: usize) -> Slot {
-        self.geometry.slots[self.hits.primitives[lane] as usize]
-    }
-
+impl Group<'_> {
     /// Of the lanes `among`, those that hit this type.
     #[inline(always)]
     fn lanes(&self, among: u64) -> u64 {
-        if self.common.is_some() {
+        if self.hits.common.is_some() {
             return among;
         }
-        bits(among).filter(|&lane| self.slot(lane).kind == self.kind).fold(0, |set, lane| set | 1 << lane)
+        let mut lanes = 0;
+        for lane in bits(among) {
+            lanes |= u64::from(self.slots[lane].kind == self.kind) << lane;
+        }
+        lanes
     }
 
     /// The fields of the primitives hit. Lanes that hit another type get those of the first.
     #[inline(always)]
-    fn fields<S: Simd, const N: usize>(&self, simd: S, blocks: impl Fn(&Geometry) -> &Vec<Block<N>>) -> [S::f32s; N] {
-        let blocks = blocks(self.geometry);
-        let slot = self.slot(self.first);
-        if self.common.is_some() {
-            return blocks[slot.block as usize].splat(simd, slot.place.into());
+    fn fields<S: Simd, const N: usize>(&self, simd: S, blocks: &[Block<N>]) -> [S::f32s; N] {
+        let first = self.slots[self.first];
+        if self.hits.common.is_some() {
+            return blocks[first.block as usize].splat(simd, first.place.into());
         }
         let lanes = S::f32s::LEN;
         let mut gathered = [[0.0; MOST_LANES]; N];
         for lane in 0..lanes {
-            let hit = self.hits.active >> lane & 1 != 0;
-            let slot = if hit && self.slot(lane).kind == self.kind { self.slot(lane) } else { slot };
+            let slot = if self.slots[lane].kind == self.kind { self.slots[lane] } else { first };
             let block = &blocks[slot.block as usize];
+            let place = usize::from(slot.place) % BLOCK;
             for (row, field) in gathered.iter_mut().zip(&block.fields) {
-                row[lane] = field[usize::from(slot.place)];
+                row[lane] = field[place];
             }
         }
         let mut fields = [S::f32s::splat(simd, 0.0); N];
@@ -178,7 +193,7 @@ impl SlotsOf<'_> {
 
 macro_rules! define_surface {
     ($($kernel:ident $fields:literal $blocks:ident,)+) => {
-        impl SlotsOf<'_> {
+        impl Group<'_> {
             /// The surfaces of the lanes that hit this type.
             #[inline(always)]
             fn surface<S: Simd>(
@@ -186,7 +201,7 @@ macro_rules! define_surface {
             ) -> SurfacePoint<S::f32s> {
                 match self.kind {
                     $(PrimitiveKind::$kernel => {
-                        let fields = self.fields::<S, $fields>(simd, |g| &g.$blocks);
+                        let fields = self.fields::<S, $fields>(simd, &self.geometry.$blocks);
                         $kernel::surface(&fields, origin, direction, t)
                     })+
                 }
@@ -197,30 +212,53 @@ macro_rules! define_surface {
 for_each_primitive!(define_surface);
 
 /// Materials of a packet's hits.
-pub(super) struct Materials {
-    /// Index of each lane's material; that of a hitting lane where there is no hit.
+pub(super) struct Materials<S: Simd> {
+    /// The material of each lane; that of a hitting lane where there is no hit.
     lanes: [u32; MOST_LANES],
-    /// Whether they are all the same.
-    uniform: bool,
-    /// A lane with a hit.
-    first: usize,
+    /// Each material once.
+    distinct: [u32; MOST_LANES],
+    /// Which lanes have it.
+    masks: [Mask<S>; MOST_LANES],
+    /// How many there are.
+    count: usize,
 }
 
-impl Materials {
+impl<S: Simd> Materials<S> {
     #[inline(always)]
-    pub fn new(frame: &Frame<'_>, hits: &Hits<'_>) -> Self {
-        let material = |lane: usize| {
-            let object = frame.scene.geometry.ids[hits.primitives[lane] as usize].object;
-            frame.scene.objects[object as usize].material
-        };
+    pub fn new(simd: S, frame: &Frame<'_>, hits: &Hits<'_>) -> Self {
+        let ids = &frame.scene.geometry.ids;
+        let objects = &frame.scene.objects;
         let first = hits.active.trailing_zeros() as usize;
-        let mut lanes = [material(first); MOST_LANES];
-        if hits.common().is_none() {
+        let material = objects[ids[hits.primitives[first] as usize].object as usize].material;
+        let mut materials = Self {
+            lanes: [material; MOST_LANES],
+            distinct: [material; MOST_LANES],
+            masks: [Mask::<S>::splat(simd, true); MOST_LANES],
+            count: 1,
+        };
+        if hits.common.is_none() {
             for lane in hits.lanes() {
-                lanes[lane] = material(lane);
+                materials.lanes[lane] = objects[ids[hits.primitives[lane] as usize].object as usize].material;
             }
+            materials.sort_out(simd);
         }
-        Self { uniform: lanes.iter().all(|&m| m == lanes[0]), lanes, first }
+        materials
+    }
+
+    /// Finds which materials there are, and where.
+    #[inline(always)]
+    fn sort_out(&mut self, simd: S) {
+        let lanes = S::u32s::from_slice(simd, &self.lanes[..S::f32s::LEN]);
+        let mut left = (1_u64 << S::f32s::LEN) - 1;
+        self.count = 0;
+        while left != 0 {
+            let material = self.lanes[left.trailing_zeros() as usize];
+            let same = lanes.simd_eq(S::u32s::splat(simd, material)).to_bitmask();
+            self.distinct[self.count] = material;
+            self.masks[self.count] = Mask::<S>::from_bitmask(simd, same);
+            self.count += 1;
+            left &= !same;
+        }
     }
 
     /// The material of a lane.
@@ -229,37 +267,40 @@ impl Materials {
         self.lanes[lane] as usize
     }
 
-    /// Whether any lane's material passes a test.
+    /// Whether any material passes a test.
     #[inline(always)]
-    pub fn any(&self, hits: &Hits<'_>, mut test: impl FnMut(usize) -> bool) -> bool {
-        if self.uniform { test(self.of(self.first)) } else { hits.lanes().any(|lane| test(self.of(lane))) }
+    pub fn any(&self, mut test: impl FnMut(usize) -> bool) -> bool {
+        for &material in &self.distinct[..self.count] {
+            if test(material as usize) {
+                return true;
+            }
+        }
+        false
     }
 
     /// One number of every lane's material.
     #[inline(always)]
-    pub fn row<S: Simd>(&self, simd: S, frame: &Frame<'_>, row: usize) -> S::f32s {
+    pub fn row(&self, simd: S, frame: &Frame<'_>, row: usize) -> S::f32s {
         debug_assert!(row < ROWS);
-        let materials = &frame.tables.materials;
-        if self.uniform {
-            return S::f32s::splat(simd, materials[self.of(self.first)].rows[row]);
+        let table = &frame.tables.materials;
+        let mut value = S::f32s::splat(simd, table[self.distinct[0] as usize].rows[row]);
+        for other in 1..self.count {
+            let number = S::f32s::splat(simd, table[self.distinct[other] as usize].rows[row]);
+            value = self.masks[other].select(number, value);
         }
-        let mut gathered = [0.0; MOST_LANES];
-        for (value, &material) in gathered.iter_mut().zip(&self.lanes) {
-            *value = materials[material as usize].rows[row];
-        }
-        S::f32s::from_slice(simd, &gathered[..S::f32s::LEN])
+        value
     }
 
     /// Three numbers in a row.
     #[inline(always)]
-    pub fn triple<S: Simd>(&self, simd: S, frame: &Frame<'_>, first: Row) -> V3<S::f32s> {
+    pub fn triple(&self, simd: S, frame: &Frame<'_>, first: Row) -> V3<S::f32s> {
         let row = first as usize;
         V3::new(self.row(simd, frame, row), self.row(simd, frame, row + 1), self.row(simd, frame, row + 2))
     }
 
     /// Surface colour and emission, textures looked up.
     #[inline(always)]
-    pub fn colors<S: Simd>(
+    pub fn colors(
         &self,
         simd: S,
         frame: &Frame<'_>,
@@ -310,12 +351,12 @@ pub(super) fn transmission<S: Simd>(
     packet: &Packet<S>,
     t: S::f32s,
 ) -> V3<S::f32s> {
-    let hits = Hits::new(primitives.as_slice());
+    let hits = Hits::new(simd, primitives.as_slice());
     let one = V3::splat(simd, Vec3::ONE);
     if hits.active == 0 {
         return one;
     }
-    let materials = Materials::new(frame, &hits);
+    let materials = Materials::new(simd, frame, &hits);
     let color = if frame.plan.textures {
         let surfaces = surfaces(simd, frame, &hits, packet.origin, packet.direction, t);
         materials.colors(simd, frame, &hits, &surfaces).0

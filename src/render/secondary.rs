@@ -114,6 +114,10 @@ fn refract(material: &Material, incident: &Incident, cosine: f32, eta: f32, bend
 
 /// Exact reflectance of unpolarised light between dielectrics; `eta` is the index in front divided by that behind.
 fn dielectric_fresnel(cosine_in: f32, cosine_out: f32, eta: f32) -> f32 {
+    if cosine_in + cosine_out == 0.0 {
+        // Along a surface with the same index on both sides: there is nothing to reflect from.
+        return 0.0;
+    }
     let across = (eta * cosine_in - cosine_out) / (eta * cosine_in + cosine_out);
     let along = (cosine_in - eta * cosine_out) / (cosine_in + eta * cosine_out);
     (across * across + along * along) * 0.5
@@ -148,5 +152,6 @@ mod tests {
         let grazing = (1.0_f32 - 1.0 / 2.25).sqrt();
         assert!(dielectric_fresnel(1e-4, grazing, 1.0 / 1.5) > 0.999);
         assert_eq!(dielectric_fresnel(0.5, 0.5, 1.0), 0.0);
+        assert_eq!(dielectric_fresnel(0.0, 0.0, 1.0), 0.0);
     }
 }

@@ -73,7 +73,7 @@ fn absorption_of(scene: &Scene, object: u32) -> Vec3 {
 fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, worker: &mut Worker) {
     let lanes = at..at + S::f32s::LEN;
     let Worker { rays, next_rays, shadows, media, color: pixels, seen, stats, .. } = worker;
-    let hits = Hits::new(&rays.primitive[lanes.clone()]);
+    let hits = Hits::new(simd, &rays.primitive[lanes.clone()]);
     let count = (rays.len() - at).min(S::f32s::LEN);
     let missed = |lane: usize| rays.weight.get(at + lane) * frame.scene.render.background;
     if hits.active == 0 {
@@ -92,7 +92,7 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
         }
     }
 
-    let materials = Materials::new(frame, &hits);
+    let materials = Materials::new(simd, frame, &hits);
     let (color, emission) = materials.colors(simd, frame, &hits, &surfaces);
     let lit = Lit::<S> {
         active: Mask::<S>::from_bitmask(simd, hits.active),
@@ -112,7 +112,7 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
         add(pixels, rays.sample[at + lane], light);
     }
 
-    let reflectance = Reflectance::gather(simd, frame, &hits, &materials, color, lit.opacity);
+    let reflectance = Reflectance::gather(simd, frame, &materials, color, lit.opacity);
     let samples = &rays.sample[lanes];
     for (light, queue) in frame.lights.iter().zip(shadows) {
         let Some((reaching, to_light, distance, gain)) = light_gain(simd, light, &lit, &reflectance) else {
@@ -125,7 +125,7 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
 
     if level < frame.plan.depth && (frame.plan.reflections || frame.plan.refractions) {
         let spawns = |material: usize| frame.tables.materials[material].secondary;
-        if materials.any(&hits, spawns) {
+        if materials.any(spawns) {
             for lane in hits.lanes().filter(|&lane| spawns(materials.of(lane))) {
                 let incident = Incident {
                     direction: direction.lane(lane),
@@ -243,7 +243,7 @@ pub(super) fn store_seen<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worke
 #[inline(always)]
 fn store_seen_packet<S: Simd>(simd: S, frame: &Frame<'_>, at: usize, rays: &RayQueue, seen: &mut [Seen]) {
     let lanes = at..at + S::f32s::LEN;
-    let hits = Hits::new(&rays.primitive[lanes.clone()]);
+    let hits = Hits::new(simd, &rays.primitive[lanes.clone()]);
     for lane in 0..(rays.len() - at).min(S::f32s::LEN) {
         seen[rays.sample[at + lane] as usize] = Seen::NOTHING;
     }

@@ -1,6 +1,6 @@
 //! Textures: images and checkers, looked up by surface coordinates.
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec3A};
 use std::sync::Arc;
 use std::sync::LazyLock;
 
@@ -54,10 +54,11 @@ impl ImageTexture {
         let row = |from_bottom: u32| (self.height - 1 - from_bottom) as usize * self.width as usize;
         let decode = srgb_table();
         let texel = |row: usize, column: u32| {
-            Vec3::from_array(self.texels[row + column as usize].map(|byte| decode[usize::from(byte)]))
+            let [r, g, b] = self.texels[row + column as usize];
+            Vec3A::new(decode[usize::from(r)], decode[usize::from(g)], decode[usize::from(b)])
         };
         let along = |row: usize| texel(row, left) * (1.0 - across) + texel(row, right) * across;
-        along(row(bottom)) * (1.0 - up) + along(row(top)) * up
+        Vec3::from(along(row(bottom)) * (1.0 - up) + along(row(top)) * up)
     }
 }
 

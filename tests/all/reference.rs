@@ -67,7 +67,8 @@ fn check(name: &str, scene: &Scene, settings: &Settings, differing: f64) -> Vec<
         let name = format!("{name}, camera {}", camera.name);
         println!("{name}: {:.3} % differ", found.differing * 100.0);
         if let Some(first) = found.wrong.first() {
-            problems.push(format!("{name}: {} pixels differ without a reason, the first is {first}", found.wrong.len()));
+            problems
+                .push(format!("{name}: {} pixels differ without a reason, the first is {first}", found.wrong.len()));
         }
         if found.differing > differing {
             problems.push(format!("{name}: {:.2} % of the pixels differ", found.differing * 100.0));

@@ -1,8 +1,10 @@
 //! Open sides of cylinders and truncated cones:
 //! `{ "type": "cone", "base": [0,0,0], "top": [0,1,0], "radius": 0.3, "radius_top": 0.1 }`.
 //!
-//! The quadratic is solved from the ray's point nearest to the cone's middle, so that its terms are no larger than
-//! the cone itself, and by the form of the roots that never subtracts nearly equal numbers.
+//! The quadratic is solved from the ray's point nearest to the cone's middle, and by the form of the roots that never
+//! subtracts nearly equal numbers. Nearest in proportion to the cone, in which heights weigh as much as the radius
+//! beside them and its change with them, so that the quadratic's terms are no larger than the cone's radius: a flat
+//! cone's wall soon grows far beyond the cone, and along a needle most of the ray is far from the axis.
 
 use super::{Kernel, SurfacePoint, largest};
 use crate::geometry::Aabb;
@@ -45,11 +47,16 @@ impl Kernel<9> for Cone {
         let [half_height, radius, slope] = [fields[6], fields[7], fields[8]];
         let zero = F::splat(t_min.token(), 0.0);
 
-        let nearest_t = (middle - origin).dot(direction);
-        let nearest = direction.scale(nearest_t) - (middle - origin);
-        let (height, climb) = (nearest.dot(axis), direction.dot(axis));
-        let across = nearest - axis.scale(height);
+        let to_middle = middle - origin;
+        let (ascent, climb) = (to_middle.dot(axis), direction.dot(axis));
         let across_step = direction - axis.scale(climb);
+        let taper = radius / half_height;
+        let height_weight = slope * slope + taper * taper;
+        let nearest_t = ((to_middle - axis.scale(ascent)).dot(across_step) + height_weight * ascent * climb)
+            / (across_step.dot(across_step) + height_weight * climb * climb);
+        let nearest = direction.scale(nearest_t) - to_middle;
+        let height = nearest.dot(axis);
+        let across = nearest - axis.scale(height);
         let (wall, wall_step) = (radius + slope * height, slope * climb);
 
         let a = across_step.dot(across_step) - wall_step * wall_step;

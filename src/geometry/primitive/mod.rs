@@ -35,6 +35,10 @@ macro_rules! for_each_primitive {
 }
 pub(crate) use for_each_primitive;
 
+/// Hits lie within the bounds of what was hit, widened by this share of the largest coordinate of primitive and ray's
+/// origin. Boxes that are searched are widened by more, so that no box hides a hit.
+pub(super) const HIT_PADDING: f32 = 2e-6;
+
 /// A point of a surface, in lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoint<F> {

@@ -1,15 +1,16 @@
 //! Triangles: `{ "type": "triangle", "vertices": [[0,0,0],[1,0,0],[0,1,0]] }`, meshes, rectangles and box faces.
 //!
-//! Watertight: an edge's side test D·((a-O) x (b-a)) depends only on its two ends, taken in a fixed order, so two
-//! triangles that share the edge never both miss. Vertices are therefore stored in ascending order of their
-//! coordinates, with a sign for the winding. The distance is the combination of the corners' own depths by the
-//! edge functions (as in Woop, Benthin and Wald, JCGT 2(1), 2013): it stays between them however edge-on the
-//! triangle is seen, which keeps it consistent with bounding boxes.
+//! Watertight (after Woop, Benthin and Wald, JCGT 2(1), 2013): each corner is projected along the ray to a point of a
+//! plane, by arithmetic that knows of no other corner. An edge function is then a difference of two products, whose
+//! sign is never the wrong one: rounding can only make it 0, which counts as inside. So whatever the rounding, a ray
+//! into a closed mesh meets one of the triangles around an edge or a corner. The distance is the combination of the
+//! corners' own depths by the edge functions, within the triangle's box.
 
-use super::{Kernel, SurfacePoint, largest};
+use super::{HIT_PADDING, Kernel, SurfacePoint, largest};
 use crate::geometry::Aabb;
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 use glam::Vec3;
 
 /// The triangle kernel. Fields: three corners in ascending order, then +1, or -1 where sorting turned the winding.
@@ -45,12 +46,22 @@ impl Triangle {
     /// Barycentric weights of the three stored corners, not yet divided by their sum.
     #[inline(always)]
     fn weights<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], origin: V3<F>, direction: V3<F>) -> [F; 3] {
-        let [a, b, c] = *corners;
-        let (to_a, to_b) = (a - origin, b - origin);
-        let opposite_a = direction.dot(to_b.cross(c - b));
-        let opposite_b = direction.dot(to_a.cross(c - a));
-        let opposite_c = direction.dot(to_a.cross(b - a));
-        [opposite_a, -opposite_b, opposite_c]
+        let [right, up] = Self::across(direction);
+        let [a, b, c] = [corners[0] - origin, corners[1] - origin, corners[2] - origin];
+        let [(ax, ay), (bx, by), (cx, cy)] =
+            [(a.dot(right), a.dot(up)), (b.dot(right), b.dot(up)), (c.dot(right), c.dot(up))];
+        [bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx]
+    }
+
+    /// Two unit vectors across a ray's direction and across each other (Duff et al., JCGT 6(1), 2017).
+    #[inline(always)]
+    fn across<S: Simd, F: Lanes<S>>(direction: V3<F>) -> [V3<F>; 2] {
+        let V3 { x, y, z } = direction;
+        let one = F::splat(x.token(), 1.0);
+        let sign = one.copysign(z);
+        let a = -one / (sign + z);
+        let b = x * y * a;
+        [V3::new(one + sign * x * x * a, sign * b, -sign * x), V3::new(b, sign + y * y * a, -y)]
     }
 
     /// How far along the ray each corner lies.
@@ -58,6 +69,31 @@ impl Triangle {
     fn depths<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], origin: V3<F>, direction: V3<F>) -> [F; 3] {
         let [a, b, c] = *corners;
         [(a - origin).dot(direction), (b - origin).dot(direction), (c - origin).dot(direction)]
+    }
+
+    /// Where a ray enters and leaves the box around the corners, widened by [`HIT_PADDING`]. Of a triangle seen edge-on,
+    /// or of a needle, the weights are all but rounding errors: what they say of the distance is held to this.
+    #[inline(always)]
+    fn box_interval<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], origin: V3<F>, direction: V3<F>) -> (F, F) {
+        let [a, b, c] = *corners;
+        let padding = (largest(a).max(largest(b)).max(largest(c)) + largest(origin)) * HIT_PADDING;
+        let (near_x, far_x) = Self::slab([a.x, b.x, c.x], padding, origin.x, direction.x);
+        let (near_y, far_y) = Self::slab([a.y, b.y, c.y], padding, origin.y, direction.y);
+        let (near_z, far_z) = Self::slab([a.z, b.z, c.z], padding, origin.z, direction.z);
+        (near_x.max(near_y).max(near_z), far_x.min(far_y).min(far_z))
+    }
+
+    /// [`box_interval`](Self::box_interval) along one axis.
+    #[inline(always)]
+    fn slab<S: Simd, F: Lanes<S>>(corners: [F; 3], padding: F, origin: F, direction: F) -> (F, F) {
+        /// Its inverse is finite, so that nothing becomes a NaN.
+        const LEAST: f32 = 1e-30;
+        let [a, b, c] = corners;
+        let least = F::splat(a.token(), LEAST);
+        let direction = direction.abs().simd_lt(least).select(least.copysign(direction), direction);
+        let to_min = (a.min(b).min(c) - padding - origin) / direction;
+        let to_max = (a.max(b).max(c) + padding - origin) / direction;
+        (to_min.min(to_max), to_min.max(to_max))
     }
 
     /// The stored corners of a triangle given by its fields.
@@ -93,9 +129,16 @@ impl Kernel<10> for Triangle {
         let front = u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero);
         let back = u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero);
         let sum = u + v + w;
+        let inside = (front | back) & sum.simd_ne(zero);
+        if !inside.any_true() {
+            return (inside, zero);
+        }
         let [depth_a, depth_b, depth_c] = Self::depths(&corners, origin, direction);
         let t = (u * depth_a + v * depth_b + w * depth_c) / sum;
-        ((front | back) & sum.simd_ne(zero) & t.simd_gt(t_min), t)
+        let (near, far) = Self::box_interval(&corners, origin, direction);
+        let t = t.simd_lt(near).select(near, t);
+        let t = t.simd_gt(far).select(far, t);
+        (inside & near.simd_le(far) & t.simd_gt(t_min), t)
     }
 
     #[inline(always)]

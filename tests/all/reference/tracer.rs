@@ -9,8 +9,10 @@ use raywalk::scene::material::Model;
 use raywalk::scene::{Camera, Light, Material, Scene};
 use raywalk::settings::Settings;
 
-/// Rays that leave a surface meet nothing nearer than this, in units of a scene that is about 10 large.
-const MARGIN: f64 = 1e-5;
+/// Rays start this far off the surface that they leave, in units of a scene that is about 10 large: on the viewer's side,
+/// or on the other one if they are refracted. Towards a light behind it, the surface itself is in the way, even where its
+/// shading normal leans towards the light.
+const MARGIN: f64 = 1e-8;
 
 pub struct Tracer<'a> {
     scene: &'a Scene,
@@ -36,8 +38,9 @@ struct Ray {
 }
 
 impl Ray {
-    fn leaving(origin: DVec3, direction: DVec3) -> Self {
-        Self { origin, direction, range: (MARGIN, f64::INFINITY) }
+    /// A ray that leaves a surface on the side of `side`.
+    fn leaving(position: DVec3, side: DVec3, direction: DVec3) -> Self {
+        Self { origin: position + side * MARGIN, direction: direction.normalize(), range: (0.0, f64::INFINITY) }
     }
 }
 
@@ -165,7 +168,7 @@ impl<'a> Tracer<'a> {
         }
         let mut out = local;
         if reflected != DVec3::ZERO {
-            let ray = Ray::leaving(surface.position, mirrored.normalize());
+            let ray = Ray::leaving(surface.position, surface.geometric, mirrored);
             out += reflected * self.trace(ray, rays_left - 1, media, path);
         }
         if let Some(direction) = bent.filter(|_| refracted != DVec3::ZERO) {
@@ -174,7 +177,7 @@ impl<'a> Tracer<'a> {
                 (true, true) => [media, &[hit.object]].concat(),
                 (true, false) => without,
             };
-            let ray = Ray::leaving(surface.position, direction.normalize());
+            let ray = Ray::leaving(surface.position, -surface.geometric, direction);
             out += refracted * color * self.trace(ray, rays_left - 1, &media, path);
         }
         out
@@ -212,7 +215,7 @@ impl<'a> Tracer<'a> {
             if light.falloff == Falloff::InverseSquare && distance.is_finite() {
                 arriving /= distance * distance;
             }
-            arriving *= self.visible(surface.position, to_light, distance, path);
+            arriving *= self.visible(surface.position + surface.geometric * MARGIN, to_light, distance, path);
             let h = (to_light + viewer).normalize();
             out += arriving
                 * match material.model {
@@ -234,7 +237,7 @@ impl<'a> Tracer<'a> {
         let mut arriving = DVec3::ONE;
         for primitive in &self.primitives {
             for t in primitive.hits(from, to_light) {
-                if t <= MARGIN || t >= distance - MARGIN {
+                if t <= 0.0 || t >= distance - MARGIN {
                     continue;
                 }
                 let (object, material) =
