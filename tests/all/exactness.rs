@@ -90,7 +90,11 @@ fn our_own_scenes_keep_every_bit() {
         if path.extension().is_none_or(|extension| extension != "json") {
             continue;
         }
-        let Ok(scene) = load(&path, &LoadOptions::default()) else { continue };
+        // Camera paths lie among the scenes.
+        if std::fs::read_to_string(&path).unwrap().contains("\"keys\"") {
+            continue;
+        }
+        let scene = load(&path, &LoadOptions::default()).unwrap();
         found += 1;
         let cameras = stress::cameras(&scene, extra_cameras(), &mut random);
         wrong.extend(wrong_pixels(&scene.name, &scene, &cameras[..cameras.len().min(2 + extra_cameras())]));
