@@ -4,12 +4,14 @@
 //! is the one text that finds closest hits and occluders, with what to do about a hit left to a [`Visitor`].
 
 pub mod aabb;
+pub mod beam;
 pub mod block;
 pub mod bvh;
 #[cfg(test)]
 mod laws;
 pub mod packet;
 pub mod primitive;
+pub mod ray;
 pub mod shape;
 mod single;
 pub mod traverse;
@@ -18,6 +20,7 @@ pub mod visitor;
 pub use aabb::Aabb;
 pub use block::{BLOCK, Block, NO_PRIMITIVE, PrimitiveIndex};
 pub use packet::Packet;
+pub use ray::Rays;
 pub use shape::{Part, PrimitiveId, Shape, VertexAttributes};
 pub use traverse::{Search, SphereTerms, Stack};
 pub use visitor::{AnyHit, ClosestHit, NextCrossing, Opaque, Visitor};
@@ -37,7 +40,7 @@ pub struct Slot {
 }
 
 macro_rules! define_geometry {
-    ($($kernel:ident $fields:literal $blocks:ident,)+) => {
+    ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
         /// The types of primitives.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum PrimitiveKind {

@@ -6,6 +6,7 @@ use super::resolve::Encoder;
 use super::tables::Tables;
 use super::tile::{self, Worker};
 use super::{Film, FrameStats};
+use crate::geometry::beam::Projection;
 use crate::geometry::{Block, SphereTerms};
 use crate::math::{SimdToken, dispatch};
 use crate::scene::camera::CameraFrame;
@@ -40,10 +41,13 @@ impl CancelToken {
 }
 
 /// Everything a frame needs that outlives it: threads, queues, caches.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Scratch {
     /// Stops a frame early.
     pub cancel: CancelToken,
+    /// The share of the proven margins that beams use: 1. With less they may lose what is seen; that is for tests of
+    /// whether such a loss would be noticed.
+    pub beam_margin: f32,
     pool: Option<Pool>,
     tables: Tables,
     sphere_terms: Vec<Block<4>>,
@@ -86,7 +90,21 @@ pub fn thread_count(asked: i32) -> usize {
 impl Scratch {
     /// An empty scratch; the thread pool is made by the first frame.
     pub fn new() -> Self {
-        Self::default()
+        Self {
+            cancel: CancelToken::default(),
+            beam_margin: 1.0,
+            pool: None,
+            tables: Tables::default(),
+            sphere_terms: Vec::new(),
+            lights: Vec::new(),
+            around_eye: Vec::new(),
+        }
+    }
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self::new()
     }
 }
 
@@ -97,6 +115,11 @@ pub(super) struct Frame<'a> {
     pub plan: Plan,
     pub tables: &'a Tables,
     pub camera: CameraFrame,
+    /// The space of beams from the eye.
+    pub projection: Projection,
+    /// Half of the picture's width and height at unit distance.
+    pub half_picture: [f32; 2],
+    pub beam_margin: f32,
     pub lights: &'a [Light],
     /// Ambient light of the scene.
     pub ambient: Vec3,
@@ -122,7 +145,7 @@ pub fn render_frame(
 ) -> FrameStats {
     let start = Instant::now();
     let token = SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best);
-    let Scratch { cancel, pool, tables, sphere_terms, lights, around_eye } = scratch;
+    let Scratch { cancel, beam_margin, pool, tables, sphere_terms, lights, around_eye } = scratch;
     if tables.generation != Some(scene.generation) {
         *tables = Tables::new(scene);
     }
@@ -145,12 +168,17 @@ pub fn render_frame(
         let thesis = plan.sphere_cache == SphereCache::Thesis;
         dispatch!(token, simd => scene.geometry.fill_sphere_terms(simd, camera.eye, thesis, sphere_terms));
     }
+    let view = camera.frame(film.width(), film.height());
+    let axes = [view.right.normalize(), view.up.normalize(), view.forward];
     let frame = Frame {
         scene,
         settings,
         plan,
         tables,
-        camera: camera.frame(film.width(), film.height()),
+        camera: view,
+        projection: Projection::new(view.eye, axes, false, scene.geometry.reach(), *beam_margin),
+        half_picture: [view.right.length(), view.up.length()],
+        beam_margin: *beam_margin,
         lights,
         ambient: scene.render.ambient,
         sphere_terms: match plan.sphere_cache {

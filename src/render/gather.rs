@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::queue::MOST_LANES;
 use super::tables::{ROWS, Row};
 use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, SurfacePoint, Triangle, for_each_primitive};
-use crate::geometry::{BLOCK, Block, Geometry, NO_PRIMITIVE, Packet, PrimitiveKind, Slot};
+use crate::geometry::{BLOCK, Block, Geometry, NO_PRIMITIVE, Packet, PrimitiveKind, Rays, Slot};
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -101,7 +101,7 @@ pub(super) fn surfaces<S: Simd>(
         }
         if frame.plan.vertex_attributes && group.kind == PrimitiveKind::Triangle {
             let fields = group.fields(simd, &geometry.triangles);
-            surfaces.weights = Triangle::barycentric(&fields, origin, direction);
+            surfaces.weights = Triangle::barycentric(&fields, &Rays::new(origin, direction));
         }
     }
     surfaces.shading_normal = surfaces.point.normal;
@@ -192,7 +192,7 @@ impl Group<'_> {
 }
 
 macro_rules! define_surface {
-    ($($kernel:ident $fields:literal $blocks:ident,)+) => {
+    ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
         impl Group<'_> {
             /// The surfaces of the lanes that hit this type.
             #[inline(always)]
@@ -358,7 +358,7 @@ pub(super) fn transmission<S: Simd>(
     }
     let materials = Materials::new(simd, frame, &hits);
     let color = if frame.plan.textures {
-        let surfaces = surfaces(simd, frame, &hits, packet.origin, packet.direction, t);
+        let surfaces = surfaces(simd, frame, &hits, packet.rays.origin, packet.rays.direction, t);
         materials.colors(simd, frame, &hits, &surfaces).0
     } else {
         materials.triple(simd, frame, Row::Color)

@@ -106,7 +106,7 @@ mod tests {
     }
 
     macro_rules! define_surface {
-        ($($kernel:ident $fields:literal $blocks:ident,)+) => {
+        ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
             /// Position, normal and margin at a hit of the only primitive.
             fn surface<S: Simd>(simd: S, geometry: &Geometry, origin: Vec3, direction: Vec3, t: f32) -> (Vec3, Vec3, f32) {
                 let (origin, direction) = (V3::splat(simd, origin), V3::splat(simd, direction));

@@ -32,6 +32,8 @@ pub struct Worker {
     /// What each sample sees, and how far away.
     pub(super) seen: Vec<Seen>,
     pub(super) cells: visibility::Cells,
+    pub(super) order: visibility::Order,
+    pub(super) levels: Option<Box<visibility::Levels>>,
     sums: Vec<[f32; 3]>,
 }
 

@@ -1,8 +1,12 @@
 //! What each sample of a tile sees: one file for each way of finding out.
 
+mod certified;
 mod full;
+mod order;
 mod subsample;
 
+pub use certified::Levels;
+pub use order::Order;
 pub use subsample::Cells;
 
 use super::frame::Frame;
@@ -16,6 +20,7 @@ use std::time::Instant;
 /// Fills in the colours and what is seen, for all samples of a pass.
 pub(super) fn render_pass<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
     match frame.settings.visibility {
+        Visibility::Certified => certified::render(simd, frame, pass, worker),
         Visibility::Full => full::render(simd, frame, pass, worker),
         Visibility::Subsample => subsample::render(simd, frame, pass, worker),
     }
@@ -23,7 +28,10 @@ pub(super) fn render_pass<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, work
 
 /// Fills in what is seen, not the colours.
 pub(super) fn find_all<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
-    full::find(simd, frame, pass, worker);
+    match frame.settings.visibility {
+        Visibility::Certified => certified::find(simd, frame, pass, worker),
+        Visibility::Full | Visibility::Subsample => full::find(simd, frame, pass, worker),
+    }
     super::shade::store_seen(simd, frame, worker);
 }
 
@@ -51,6 +59,15 @@ fn queue_pixels<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, pixels: &[[u16
     let rays = &mut worker.rays;
     rays.clear();
     append_pixels(simd, frame, pass, pixels, media, rays);
+}
+
+/// Replaces `worker.rays` by rays from the eye through all pixels of the tile, in order.
+fn queue_tile<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
+    let media = worker.media.restart(frame.around_eye);
+    let Worker { rays, order, .. } = worker;
+    order.prepare(pass.width, pass.height);
+    rays.clear();
+    append_pixels(simd, frame, pass, &order.pixels, media, rays);
 }
 
 /// Appends rays from the eye through the given pixels.

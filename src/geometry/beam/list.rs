@@ -1,0 +1,195 @@
+//! The primitives that a beam can meet.
+
+use super::outline::{Outline, is_behind};
+use super::projection::{Beam, Cover};
+use crate::geometry::primitive::{Cone, Disk, Plane, Sphere, Triangle, for_each_primitive};
+use crate::geometry::{BLOCK, Geometry, PrimitiveIndex};
+use crate::math::Lanes;
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+
+/// Most candidates of one type: with more, smaller beams are cheaper.
+pub(super) const MOST: usize = 240;
+
+/// Room beyond, for whole vectors to be stored at the end.
+const ROOM: usize = MOST + 32;
+
+/// Primitives of one type: their outlines, number by number, and where they lie.
+#[derive(Clone, Debug)]
+pub struct List<const M: usize> {
+    outlines: Box<[[f32; ROOM]; M]>,
+    places: Box<[u32; ROOM]>,
+    len: usize,
+}
+
+impl<const M: usize> Default for List<M> {
+    fn default() -> Self {
+        Self { outlines: Box::new([[0.0; ROOM]; M]), places: Box::new([0; ROOM]), len: 0 }
+    }
+}
+
+impl<const M: usize> List<M> {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Block and place within it of each.
+    pub fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.places[..self.len].iter().map(|&place| (place as usize / BLOCK, place as usize % BLOCK))
+    }
+
+    /// Empties the list.
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Whether a block's worth more fits.
+    fn has_room(&self) -> bool {
+        self.len + BLOCK <= MOST
+    }
+
+    /// Appends the masked lanes; `place_of` tells where the primitive of each lane lies.
+    #[inline(always)]
+    fn append<S: Simd, F: Lanes<S>>(&mut self, mask: F::Mask, outlines: &[F; M], places: &[u32]) {
+        let at = self.len;
+        for (column, values) in self.outlines.iter_mut().zip(outlines) {
+            values.compress(mask).store_slice(&mut column[at..at + F::LEN]);
+        }
+        let mut lanes = mask.to_bitmask();
+        while lanes != 0 {
+            self.places[self.len] = places[lanes.trailing_zeros() as usize];
+            self.len += 1;
+            lanes &= lanes - 1;
+        }
+    }
+
+    #[inline(always)]
+    fn load<S: Simd, F: Lanes<S>>(&self, simd: S, at: usize) -> [F; M] {
+        let mut outlines = [F::splat(simd, 0.0); M];
+        for (lanes, column) in outlines.iter_mut().zip(self.outlines.iter()) {
+            *lanes = F::from_slice(simd, &column[at..at + F::LEN]);
+        }
+        outlines
+    }
+
+    /// Appends what of the first `count` lanes the beam can meet in front of the cover, and moves the cover up to the
+    /// nearest that covers the beam.
+    #[inline(always)]
+    pub(super) fn sift<K: Outline<N, M>, S: Simd, F: Lanes<S>, const N: usize>(
+        &mut self,
+        outlines: &[F; M],
+        places: &[u32],
+        count: usize,
+        beam: &Beam<'_>,
+        cover: &mut Cover,
+    ) {
+        let used = (1_u64 << count) - 1;
+        let missed = K::misses(outlines, beam) | is_behind(K::nearest(outlines), beam, cover);
+        let kept = !missed.to_bitmask() & used;
+        if kept == 0 {
+            return;
+        }
+        let mut covering = K::covers(outlines, beam).to_bitmask() & kept;
+        while covering != 0 {
+            let lane = covering.trailing_zeros() as usize;
+            covering &= covering - 1;
+            let mut outline = [0.0; M];
+            for (number, lanes) in outline.iter_mut().zip(outlines) {
+                *number = lanes[lane];
+            }
+            let [nearest_x, nearest_y, nearest_z] = K::nearest(outlines);
+            let nearest = [nearest_x[lane], nearest_y[lane], nearest_z[lane]];
+            cover.move_up(nearest, K::farthest(&outline, beam), beam);
+        }
+        let simd = outlines[0].token();
+        self.append::<S, F>(F::Mask::from_bitmask(simd, kept), outlines, places);
+    }
+
+    /// Replaces the list by what of `larger` the beam can meet.
+    #[inline(always)]
+    fn refill<K: Outline<N, M>, S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        larger: &Self,
+        beam: &Beam<'_>,
+        cover: &mut Cover,
+    ) {
+        self.len = 0;
+        for at in (0..larger.len).step_by(S::f32s::LEN) {
+            let outlines: [S::f32s; M] = larger.load(simd, at);
+            let count = (larger.len - at).min(S::f32s::LEN);
+            self.sift::<K, S, S::f32s, N>(&outlines, &larger.places[at..at + count], count, beam, cover);
+        }
+    }
+}
+
+macro_rules! define_candidates {
+    ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
+        /// What a beam can meet, type by type, and what covers it.
+        #[derive(Clone, Debug, Default)]
+        pub struct Candidates {
+            $(#[doc = concat!("Candidates of type ", stringify!($kernel), ".")] pub $blocks: List<$outline>,)+
+            /// The nearest cover found.
+            pub cover: Cover,
+        }
+
+        impl Candidates {
+            /// How many there are.
+            pub fn len(&self) -> usize {
+                0 $(+ self.$blocks.len())+
+            }
+
+            /// Starts over, behind `cover`.
+            pub fn restart(&mut self, cover: Cover) {
+                $(self.$blocks.clear();)+
+                self.cover = cover;
+            }
+
+            /// Whether a block of any type still fits.
+            #[inline(always)]
+            pub(super) fn has_room(&self) -> bool {
+                true $(&& self.$blocks.has_room())+
+            }
+
+            /// The candidates, type by type and within a type from front to back, if that is how they were found.
+            pub fn primitives<'a>(&'a self, geometry: &'a Geometry) -> impl Iterator<Item = PrimitiveIndex> + 'a {
+                std::iter::empty()
+                    $(.chain(self.$blocks.places().map(|(block, place)| geometry.$blocks[block].indices[place])))+
+            }
+
+            /// Replaces the candidates by those of `larger` that a beam within that one's can meet.
+            pub fn filter<S: Simd>(&mut self, simd: S, larger: &Self, beam: &Beam<'_>) {
+                self.cover = larger.cover;
+                simd.vectorize(
+                    #[inline(always)]
+                    || {
+                        $(if larger.$blocks.is_empty() {
+                            self.$blocks.clear();
+                        } else {
+                            self.$blocks.refill::<$kernel, S, $fields>(simd, &larger.$blocks, beam, &mut self.cover);
+                        })+
+                    },
+                );
+            }
+        }
+    };
+}
+for_each_primitive!(define_candidates);
+
+impl Candidates {
+    /// Whether there are none: every ray of the beam misses everything.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether all rays of the beam are known to see one thing, or nothing.
+    pub fn is_certain(&self) -> bool {
+        self.is_empty() || (self.len() == 1 && self.cover.hides)
+    }
+}

@@ -1,0 +1,244 @@
+//! The space in which a beam is a rectangle, and the beam in it.
+
+use super::SLACK;
+use crate::geometry::bvh::{Node, WIDTH};
+use crate::math::{Lanes, V3};
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8};
+use glam::Vec3;
+
+/// How points are mapped to the plane in which a bundle of rays is a set of points.
+///
+/// A point's view coordinates are (x, y, z) along `right`, `up` and `forward` from the apex. A ray is the point
+/// q = (x, y, 1): in perspective all points with view coordinates z q, in parallel projection all with the same (x, y).
+///
+/// *Nearness* orders what lies on a ray: 1/z in perspective, -z in parallel projection; both are linear in q on a plane.
+#[derive(Clone, Copy, Debug)]
+pub struct Projection {
+    /// Where all rays start, or any point where they are parallel.
+    pub apex: Vec3,
+    /// Unit vectors, across each other.
+    pub right: Vec3,
+    /// See `right`.
+    pub up: Vec3,
+    /// See `right`: the middle of the rays.
+    pub forward: Vec3,
+    /// Whether rays are parallel to `forward` rather than start at the apex.
+    pub parallel: bool,
+    /// How far surfaces may seem to be from where they are, in world units.
+    pub slack: f32,
+    /// The same as a share of the coordinates in play.
+    pub slack_share: f32,
+}
+
+impl Projection {
+    /// A projection for rays that stay within `reach` of the world's origin along every axis, apart from what they hit
+    /// of planes. `margin` is the share of the proven margins to keep: 1, but for tests of what catches a lack of them.
+    pub fn new(apex: Vec3, [right, up, forward]: [Vec3; 3], parallel: bool, reach: f32, margin: f32) -> Self {
+        let slack_share = SLACK * margin;
+        let slack = slack_share * (reach + apex.abs().max_element());
+        Self { apex, right, up, forward, parallel, slack, slack_share }
+    }
+
+    /// View coordinates of a vector.
+    #[inline(always)]
+    pub fn turn<S: Simd, F: Lanes<S>>(&self, v: V3<F>) -> V3<F> {
+        let simd = v.x.token();
+        V3::new(
+            v.dot(V3::splat(simd, self.right)),
+            v.dot(V3::splat(simd, self.up)),
+            v.dot(V3::splat(simd, self.forward)),
+        )
+    }
+
+    /// View coordinates of a point.
+    #[inline(always)]
+    pub fn view<S: Simd, F: Lanes<S>>(&self, point: V3<F>) -> V3<F> {
+        let simd = point.x.token();
+        self.turn(point - V3::splat(simd, self.apex))
+    }
+
+    /// The world vector whose product with a vector is `form`'s with its view coordinates.
+    fn normal_of(&self, form: [f32; 3]) -> Vec3 {
+        self.right * form[0] + self.up * form[1] + self.forward * form[2]
+    }
+}
+
+/// The points p with normal·p >= offset.
+#[derive(Clone, Copy, Debug)]
+struct HalfSpace {
+    normal: Vec3,
+    offset: f32,
+}
+
+impl HalfSpace {
+    /// The half-space through `point`, larger by `slack`.
+    fn through(normal: Vec3, point: Vec3, slack: f32) -> Self {
+        Self { normal, offset: normal.dot(point) - 2.0 * slack * normal.length() }
+    }
+
+    /// Which of a node's boxes lie outside.
+    #[inline(always)]
+    fn excludes<S: Simd>(&self, simd: S, node: &Node) -> u32 {
+        let mut farthest = f32x8::splat(simd, 0.0);
+        for axis in 0..3 {
+            let component = self.normal[axis];
+            let faces = if component > 0.0 { &node.max[axis] } else { &node.min[axis] };
+            farthest = f32x8::from_slice(simd, faces).mul_add(f32x8::splat(simd, component), farthest);
+        }
+        farthest.simd_lt(f32x8::splat(simd, self.offset)).to_bitmask() as u32
+    }
+}
+
+/// What hides everything behind it, all over a beam.
+#[derive(Clone, Copy, Debug)]
+pub struct Cover {
+    /// A lower bound of its nearness on ray q, as a product with q.
+    pub nearness: [f32; 3],
+    /// Whether there is one.
+    pub hides: bool,
+    /// What is not entirely behind it.
+    not_behind: HalfSpace,
+}
+
+impl Default for Cover {
+    fn default() -> Self {
+        let not_behind = HalfSpace { normal: Vec3::ZERO, offset: -1.0 };
+        Self { nearness: [0.0; 3], hides: false, not_behind }
+    }
+}
+
+impl Cover {
+    /// Nothing: it hides what lies behind the eye.
+    pub fn nothing(projection: &Projection) -> Self {
+        let farthest = if projection.parallel { -Self::FAR } else { 0.0 };
+        Self { hides: false, ..Self::new(projection, [0.0, 0.0, farthest]) }
+    }
+
+    /// A nearness that nothing has.
+    pub(super) const FAR: f32 = 1e30;
+
+    /// A cover of at least the given nearness.
+    pub fn new(projection: &Projection, nearness: [f32; 3]) -> Self {
+        // A point z q lies behind where nearness·(z q) > 1, or in parallel projection z + nearness·q > 0.
+        let [x, y, z] = nearness;
+        let (form, least) = if projection.parallel { ([x, y, 1.0], -z) } else { ([x, y, z], 1.0) };
+        let normal = -projection.normal_of(form);
+        let offset = normal.dot(projection.apex) - least - 2.0 * projection.slack * normal.length();
+        Self { nearness, hides: true, not_behind: HalfSpace { normal, offset } }
+    }
+
+    /// Takes a covering primitive's bounds of nearness instead, if it hides more.
+    pub(super) fn move_up(&mut self, nearest: [f32; 3], farthest: [f32; 3], beam: &Beam<'_>) {
+        let hides_more = beam.middle_of(farthest) > beam.middle_of(self.nearness);
+        if hides_more && beam.range_of(nearest).1 < beam.greatest_nearness {
+            *self = Self::new(beam.projection, farthest);
+        }
+    }
+}
+
+/// The rays q = (x, y, 1) of a rectangle, borders included.
+#[derive(Clone, Copy, Debug)]
+pub struct Beam<'a> {
+    /// The space that it lies in.
+    pub projection: &'a Projection,
+    /// Least and greatest x.
+    pub x: [f32; 2],
+    /// Least and greatest y.
+    pub y: [f32; 2],
+    /// Length of q at most.
+    pub longest: f32,
+    /// Unit directions of the corners in view coordinates, in perspective.
+    pub corners: [Vec3; 4],
+    /// For each side (x least, x greatest, y least, y greatest) the length of its plane's normal in view coordinates.
+    pub side_lengths: [f32; 4],
+    /// Covers must be less near than this: rays do not see what is nearer.
+    pub greatest_nearness: f32,
+    walls: [HalfSpace; 4],
+}
+
+impl<'a> Beam<'a> {
+    /// The beam of a rectangle; it is widened a little, as much as directions may be rounded.
+    pub fn new(projection: &'a Projection, x: [f32; 2], y: [f32; 2]) -> Self {
+        let widen = |[from, to]: [f32; 2]| {
+            let most = from.abs().max(to.abs());
+            let by = if projection.parallel { projection.slack } else { projection.slack_share * (1.0 + most) };
+            [from - by, to + by]
+        };
+        let (x, y) = (widen(x), widen(y));
+        let Projection { apex, right, up, forward, parallel, slack, .. } = *projection;
+        let wall = |axis: Vec3, [from, to]: [f32; 2]| {
+            [(1.0, from), (-1.0, to)].map(|(sign, at)| {
+                if parallel {
+                    let normal = axis * sign;
+                    HalfSpace { normal, offset: normal.dot(apex) + sign * at - 2.0 * slack }
+                } else {
+                    HalfSpace::through((axis - forward * at) * sign, apex, slack)
+                }
+            })
+        };
+        let ([left, right_wall], [bottom, top]) = (wall(right, x), wall(up, y));
+        let length = |at: f32| if parallel { 1.0 } else { (1.0 + at * at).sqrt() };
+        let corners = [[x[0], y[0]], [x[1], y[0]], [x[0], y[1]], [x[1], y[1]]].map(|[x, y]| Vec3::new(x, y, 1.0));
+        let longest = if parallel { 1.0 } else { corners.iter().fold(0.0, |most: f32, q| most.max(q.length())) };
+        Self {
+            projection,
+            x,
+            y,
+            longest,
+            corners: corners.map(Vec3::normalize),
+            side_lengths: [x[0], x[1], y[0], y[1]].map(length),
+            greatest_nearness: f32::INFINITY,
+            walls: [left, right_wall, bottom, top],
+        }
+    }
+
+    /// The beam of rays that see nothing nearer than `near` along them.
+    pub fn beyond(self, near: f32) -> Self {
+        // What lies at depth z is seen at a distance of z or more.
+        let greatest_nearness = if near > 0.0 { (1.0 - 1e-4) / near } else { f32::INFINITY };
+        Self { greatest_nearness, ..self }
+    }
+
+    /// Which of a node's boxes hold something that a ray can meet in front of `cover`.
+    #[inline(always)]
+    pub(super) fn meets<S: Simd>(&self, simd: S, node: &Node, cover: &Cover) -> u32 {
+        let mut outside = cover.not_behind.excludes(simd, node);
+        for wall in &self.walls {
+            outside |= wall.excludes(simd, node);
+        }
+        !outside & ((1 << WIDTH) - 1)
+    }
+
+    /// How deep along `forward` a node's boxes begin.
+    #[inline(always)]
+    pub(super) fn depths<S: Simd>(&self, simd: S, node: &Node) -> f32x8<S> {
+        let mut nearest = f32x8::splat(simd, 0.0);
+        for axis in 0..3 {
+            let component = self.projection.forward[axis];
+            let faces = if component > 0.0 { &node.min[axis] } else { &node.max[axis] };
+            nearest = f32x8::from_slice(simd, faces).mul_add(f32x8::splat(simd, component), nearest);
+        }
+        nearest
+    }
+
+    /// The least and the greatest value of a linear form over the rectangle.
+    #[inline(always)]
+    pub(super) fn range<S: Simd, F: Lanes<S>>(&self, [a, b, c]: [F; 3]) -> (F, F) {
+        let (left, right) = (a * self.x[0], a * self.x[1]);
+        let (bottom, top) = (b * self.y[0], b * self.y[1]);
+        (left.min(right) + bottom.min(top) + c, left.max(right) + bottom.max(top) + c)
+    }
+
+    /// As [`range`](Self::range), of one form.
+    pub(super) fn range_of(&self, [a, b, c]: [f32; 3]) -> (f32, f32) {
+        let (left, right) = (a * self.x[0], a * self.x[1]);
+        let (bottom, top) = (b * self.y[0], b * self.y[1]);
+        (left.min(right) + bottom.min(top) + c, left.max(right) + bottom.max(top) + c)
+    }
+
+    /// A linear form's value in the middle.
+    pub(super) fn middle_of(&self, [a, b, c]: [f32; 3]) -> f32 {
+        a * 0.5 * (self.x[0] + self.x[1]) + b * 0.5 * (self.y[0] + self.y[1]) + c
+    }
+}

@@ -1,0 +1,165 @@
+//! `--visibility certified`: what a block of pixels can see is proven once for all of them.
+//!
+//! The idea is beam tracing (Heckbert and Hanrahan, SIGGRAPH 1984) turned into a choice of candidates: a block's beam
+//! walks the tree once and lists the primitives that it can meet (compare the entry points of multi-level ray tracing,
+//! Reshetov, Soupikov and Hurley, SIGGRAPH 2005); smaller blocks sift that list, and rays are tested against the few
+//! that are left. What the rays see is then what they would see on their own, bit for bit.
+
+use super::order::Area;
+use super::{Pass, Worker, queue_tile, shade_queue};
+use crate::geometry::beam::{Beam, Candidates, Cover};
+use crate::geometry::{ClosestHit, Rays, Search};
+use crate::math::V3;
+use crate::render::frame::Frame;
+use crate::render::tile::milliseconds_since;
+use crate::render::trace;
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+use std::time::Instant;
+
+/// Candidates of a block, of one of its quarters, and of the cells of that one.
+#[derive(Debug, Default)]
+pub struct Levels {
+    block: Candidates,
+    half: Candidates,
+    cells: [Candidates; 4],
+}
+
+/// How far outside of a pixel's centre a beam begins, in pixels.
+const WIDENING: f32 = 0.01;
+
+pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
+    find(simd, frame, pass, worker);
+    shade_queue(simd, frame, worker);
+}
+
+/// Leaves the hits of all samples in `worker.rays`.
+pub(super) fn find<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
+    let start = Instant::now();
+    queue_tile(simd, frame, pass, worker);
+    worker.rays.pad();
+    worker.stats.stages_ms.visibility += milliseconds_since(start);
+    let mut levels = worker.levels.take().unwrap_or_default();
+    for block in 0..worker.order.blocks.len() {
+        find_block(simd, frame, pass, block, &mut levels, worker);
+    }
+    worker.levels = Some(levels);
+    // The last packet's spare lanes hold what was found for nobody.
+    worker.rays.clear_padding();
+}
+
+fn find_block<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    pass: &Pass,
+    block: usize,
+    levels: &mut Levels,
+    worker: &mut Worker,
+) {
+    let search = trace::eye_search(frame);
+    let start = Instant::now();
+    let nothing = Cover::nothing(&frame.projection);
+    let beam = beam(frame, pass, &worker.order.blocks[block]);
+    let listed = search.collect(simd, &beam, nothing, &mut levels.block, &mut worker.stack);
+    worker.stats.stages_ms.certificate += milliseconds_since(start);
+    for half in 4 * block..4 * block + 4 {
+        let area = worker.order.halves[half];
+        if area.pixels() > 0 {
+            let listed = listed.then_some(&levels.block);
+            find_half(simd, frame, pass, half, (listed, &mut levels.half, &mut levels.cells), worker);
+        }
+    }
+}
+
+fn find_half<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    pass: &Pass,
+    half: usize,
+    (block, listed, cells): (Option<&Candidates>, &mut Candidates, &mut [Candidates; 4]),
+    worker: &mut Worker,
+) {
+    let search = trace::eye_search(frame);
+    let start = Instant::now();
+    let nothing = Cover::nothing(&frame.projection);
+    let own_beam = beam(frame, pass, &worker.order.halves[half]);
+    let complete = match block {
+        Some(block) => {
+            listed.filter(simd, block, &own_beam);
+            true
+        }
+        None => search.collect(simd, &own_beam, nothing, listed, &mut worker.stack),
+    };
+    let mut resolvable = [true; 4];
+    for (at, (cell, resolvable)) in (4 * half..).zip(cells.iter_mut().zip(&mut resolvable)) {
+        let area = worker.order.cells[at];
+        if area.pixels() == 0 {
+            continue;
+        }
+        let beam = beam(frame, pass, &area);
+        if complete {
+            cell.filter(simd, listed, &beam);
+        } else {
+            *resolvable = search.collect(simd, &beam, nothing, cell, &mut worker.stack);
+        }
+    }
+    worker.stats.stages_ms.certificate += milliseconds_since(start);
+
+    let start = Instant::now();
+    for (at, (cell, resolvable)) in (4 * half..).zip(cells.iter().zip(resolvable)) {
+        let area = worker.order.cells[at];
+        let pixels = area.pixels() as u64;
+        if pixels == 0 {
+            continue;
+        }
+        if !resolvable {
+            trace::primary_range(simd, frame, area.start..area.start + area.pixels(), worker);
+            worker.stats.pixels.traced += pixels;
+            continue;
+        }
+        resolve_cell(simd, frame, &search, cell, &area, worker);
+        if cell.is_certain() {
+            worker.stats.pixels.certified += pixels;
+        } else {
+            worker.stats.pixels.resolved += pixels;
+        }
+    }
+    worker.stats.stages_ms.visibility += milliseconds_since(start);
+}
+
+/// The beam of an area's rays.
+fn beam<'a>(frame: &'a Frame<'_>, pass: &Pass, area: &Area) -> Beam<'a> {
+    let camera = &frame.camera;
+    let across = |at: f32| ((pass.x + area.x) as f32 + at + pass.offset[0]) * 2.0 / camera.width as f32 - 1.0;
+    let down = |at: f32| 1.0 - ((pass.y + area.y) as f32 + at + pass.offset[1]) * 2.0 / camera.height as f32;
+    let (right, bottom) = ((area.width - 1) as f32 + WIDENING, (area.height - 1) as f32 + WIDENING);
+    let [half_width, half_height] = frame.half_picture;
+    let x = [across(-WIDENING) * half_width, across(right) * half_width];
+    let y = [down(bottom) * half_height, down(-WIDENING) * half_height];
+    Beam::new(&frame.projection, x, y).beyond(camera.near)
+}
+
+/// Tests a cell's rays against its candidates.
+fn resolve_cell<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    search: &Search<'_>,
+    candidates: &Candidates,
+    area: &Area,
+    worker: &mut Worker,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let rays = &mut worker.rays;
+            let eye = V3::splat(simd, frame.camera.eye);
+            let (near, far) = (S::f32s::splat(simd, frame.camera.near), S::f32s::splat(simd, frame.camera.far));
+            for at in (area.start..area.start + area.pixels()).step_by(S::f32s::LEN) {
+                let packet = Rays::new(eye, rays.direction.load(simd, at));
+                let mut visitor = ClosestHit::new(simd, near, far);
+                search.resolve(simd, candidates, &packet, &mut visitor);
+                trace::store_hits(simd, &visitor, rays, at);
+            }
+        },
+    );
+}
