@@ -145,6 +145,14 @@ macro_rules! define_geometry {
 }
 for_each_primitive!(define_geometry);
 
+impl PrimitiveKind {
+    /// Whether a primitive of this type lies in a plane.
+    #[inline(always)]
+    pub fn is_flat(self) -> bool {
+        matches!(self, Self::Triangle | Self::Plane | Self::Disk)
+    }
+}
+
 impl Packed {
     /// Packs a shape; `None` where it has no extent.
     fn new(shape: &Shape) -> Option<Self> {

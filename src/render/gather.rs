@@ -65,6 +65,8 @@ pub(super) struct Surfaces<S: Simd> {
     pub shading_normal: V3<S::f32s>,
     /// Weights of a triangle's corners in the kernel's order; only where the plan interpolates.
     pub weights: [S::f32s; 3],
+    /// Bit set of the lanes whose primitive is flat.
+    pub flat: u64,
 }
 
 /// The surfaces at distances `t`.
@@ -80,7 +82,7 @@ pub(super) fn surfaces<S: Simd>(
     let geometry = &frame.scene.geometry;
     let zero = S::f32s::splat(simd, 0.0);
     let blank = SurfacePoint { position: V3::all(zero), normal: V3::all(zero), scale: zero };
-    let mut surfaces = Surfaces { point: blank, shading_normal: V3::all(zero), weights: [zero; 3] };
+    let mut surfaces = Surfaces { point: blank, shading_normal: V3::all(zero), weights: [zero; 3], flat: 0 };
     let slots = slots_of(geometry, hits);
     let mut left = hits.active;
     while left != 0 {
@@ -88,6 +90,9 @@ pub(super) fn surfaces<S: Simd>(
         let group = Group { geometry, hits, slots: &slots, kind: slots[first].kind, first };
         let lanes = group.lanes(left);
         left &= !lanes;
+        if group.kind.is_flat() {
+            surfaces.flat |= lanes;
+        }
         let part = group.surface(simd, origin, direction, t);
         if lanes == hits.active {
             surfaces.point = part;

@@ -194,6 +194,9 @@ impl RayQueue {
     }
 }
 
+/// Shaded rays whose shadow rays follow each other in one of [`ShadowQueue::runs`].
+pub const RUN: usize = 256;
+
 /// Shadow rays towards one light.
 #[derive(Clone, Debug, Default)]
 pub struct ShadowQueue {
@@ -205,6 +208,11 @@ pub struct ShadowQueue {
     /// Distance of the light.
     pub distance: Vec<f32>,
     pub sample: Vec<u32>,
+    /// The primitive that the ray leaves, where that is flat and so cannot shadow itself; else [`NO_PRIMITIVE`].
+    pub source: Vec<u32>,
+    /// How many shadow rays there were when each [`RUN`] of shaded rays began, and at the end: the rays
+    /// `runs[k]..runs[k + 1]` start where the rays of run k hit, close together.
+    pub runs: Vec<u32>,
     len: usize,
 }
 
@@ -217,6 +225,12 @@ impl ShadowQueue {
     /// Empties the queue; its memory stays.
     pub fn clear(&mut self) {
         self.len = 0;
+        self.runs.clear();
+    }
+
+    /// Begins the next run, or ends the last.
+    pub fn mark_run(&mut self) {
+        self.runs.push(self.len as u32);
     }
 
     /// Makes room for `rays` more, and lanes beyond.
@@ -229,6 +243,7 @@ impl ShadowQueue {
             }
             self.distance.resize(room, 0.0);
             self.sample.resize(room, 0);
+            self.source.resize(room, NO_PRIMITIVE);
         }
     }
 
@@ -241,7 +256,8 @@ impl ShadowQueue {
         direction: V3<S::f32s>,
         distance: S::f32s,
         gain: V3<S::f32s>,
-        samples: &[u32],
+        sample: S::u32s,
+        source: S::u32s,
     ) {
         let lanes = S::f32s::LEN;
         self.reserve(lanes);
@@ -260,12 +276,9 @@ impl ShadowQueue {
         ] {
             values.compress(mask).store_slice(&mut column[at.clone()]);
         }
-        let mut bits = mask.to_bitmask();
-        while bits != 0 {
-            self.sample[self.len] = samples[bits.trailing_zeros() as usize];
-            self.len += 1;
-            bits &= bits - 1;
-        }
+        sample.compress(mask).store_slice(&mut self.sample[at.clone()]);
+        source.compress(mask).store_slice(&mut self.source[at]);
+        self.len += mask.to_bitmask().count_ones() as usize;
     }
 
     /// Repeats the last ray beyond the end, with no distance to go.

@@ -4,7 +4,7 @@ use super::brdf::Reflectance;
 use super::frame::Frame;
 use super::gather::{Hits, Materials, Surfaces, surfaces};
 use super::leave;
-use super::queue::RayQueue;
+use super::queue::{RUN, RayQueue, ShadowQueue};
 use super::secondary::{self, Incident};
 use super::tables::Row;
 use super::tile::{Seen, Worker};
@@ -45,10 +45,21 @@ pub(super) fn shade<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &mu
         #[inline(always)]
         || {
             for at in (0..worker.rays.len()).step_by(S::f32s::LEN) {
+                if at % RUN == 0 {
+                    mark_runs(&mut worker.shadows);
+                }
                 shade_packet(simd, frame, level, at, worker);
             }
+            mark_runs(&mut worker.shadows);
         },
     );
+}
+
+/// Begins the next run of shadow rays towards every light.
+fn mark_runs(shadows: &mut [ShadowQueue]) {
+    for queue in shadows {
+        queue.mark_run();
+    }
 }
 
 /// Weakens rays by what they crossed inside of bodies.
@@ -113,14 +124,17 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
     }
 
     let reflectance = Reflectance::gather(simd, frame, &materials, color, lit.opacity);
-    let samples = &rays.sample[lanes];
+    let samples = S::u32s::from_slice(simd, &rays.sample[lanes.clone()]);
+    let primitives = S::u32s::from_slice(simd, &rays.primitive[lanes]);
+    let flat = Mask::<S>::from_bitmask(simd, surfaces.flat);
+    let source = flat.select(primitives, S::u32s::splat(simd, NO_PRIMITIVE));
     for (light, queue) in frame.lights.iter().zip(shadows) {
         let Some((reaching, to_light, distance, gain)) = light_gain(simd, light, &lit, &reflectance) else {
             continue;
         };
         let start = leave::start::<S>(lit.position, lit.facing, lit.margin, to_light);
         let reach = leave::reach::<S>(distance, lit.margin);
-        queue.push_lanes::<S>(reaching, start, to_light, reach, gain, samples);
+        queue.push_lanes::<S>(reaching, start, to_light, reach, gain, samples, source);
     }
 
     if level < frame.plan.depth && (frame.plan.reflections || frame.plan.refractions) {
