@@ -1,11 +1,10 @@
 //! `--visibility full`: a ray for every sample. The reference.
 
 use super::{Pass, Worker, shade_queue, trace_pixels};
+use crate::render::film::TILE;
 use crate::render::frame::Frame;
+use crate::render::samples::pixel_at;
 use fearless_simd::Simd;
-
-/// Edge of the blocks in which pixels follow each other, so that the rays of a packet stay close together.
-const BLOCK: usize = 4;
 
 pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
     find(simd, frame, pass, worker);
@@ -17,11 +16,11 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &
 pub(super) fn find<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
     let mut pixels = std::mem::take(&mut worker.cells.pixels);
     pixels.clear();
-    for top in (0..pass.height).step_by(BLOCK) {
-        for left in (0..pass.width).step_by(BLOCK) {
-            for y in top..(top + BLOCK).min(pass.height) {
-                pixels.extend((left..(left + BLOCK).min(pass.width)).map(|x| [x as u16, y as u16]));
-            }
+    // In the order of their numbers: the rays of a packet stay close together, and their colours side by side.
+    for sample in 0..(TILE * TILE) as u32 {
+        let [x, y] = pixel_at(sample);
+        if usize::from(x) < pass.width && usize::from(y) < pass.height {
+            pixels.push([x, y]);
         }
     }
     trace_pixels(simd, frame, pass, &pixels, worker);
