@@ -148,6 +148,14 @@ macro_rules! define_geometry {
 }
 for_each_primitive!(define_geometry);
 
+impl PrimitiveKind {
+    /// Whether a primitive of this type lies in a plane.
+    #[inline(always)]
+    pub fn is_flat(self) -> bool {
+        matches!(self, Self::Triangle | Self::Plane | Self::Disk)
+    }
+}
+
 impl Packed {
     /// Packs a shape; `None` where it has no extent.
     fn new(shape: &Shape) -> Option<Self> {
@@ -223,11 +231,5 @@ impl Geometry {
     /// Largest magnitude of any coordinate of anything finite.
     pub fn reach(&self) -> f32 {
         if self.bounds.is_empty() { 0.0 } else { self.bounds.min.abs().max(self.bounds.max.abs()).max_element() }
-    }
-
-    /// What the corners of a triangle carry; `None` for most primitives.
-    pub fn attributes_of(&self, primitive: PrimitiveIndex) -> Option<&VertexAttributes> {
-        let found = self.attributes.binary_search_by_key(&primitive, |(index, _)| *index).ok()?;
-        Some(&self.attributes[found].1)
     }
 }

@@ -12,14 +12,14 @@ use crate::math::{SimdToken, dispatch};
 use crate::scene::camera::CameraFrame;
 use crate::scene::light::{Falloff, LightKind};
 use crate::scene::{Camera, Light, Scene};
-use crate::settings::{Settings, SphereCache};
+use crate::settings::{Settings, SphereCache, Visibility};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// Asks a frame to stop between tiles.
+/// Asks a frame to stop: between tiles, and within one between the queues of its rays.
 #[derive(Clone, Debug, Default)]
 pub struct CancelToken(Arc<AtomicBool>);
 
@@ -111,6 +111,7 @@ impl Default for Scratch {
 /// All that the tiles of one frame share.
 pub(super) struct Frame<'a> {
     pub scene: &'a Scene,
+    pub cancel: &'a CancelToken,
     pub settings: &'a Settings,
     pub plan: Plan,
     pub tables: &'a Tables,
@@ -126,6 +127,8 @@ pub(super) struct Frame<'a> {
     pub sphere_terms: SphereTerms<'a>,
     /// Transparent bodies around the eye, outermost first.
     pub around_eye: &'a [u32],
+    /// Whether anybody asks what samples see.
+    pub keeps_seen: bool,
     /// Whether the film keeps anything of what it sees, and normals among it.
     pub keeps_planes: bool,
     pub keeps_normals: bool,
@@ -172,6 +175,7 @@ pub fn render_frame(
     let axes = [view.right.normalize(), view.up.normalize(), view.forward];
     let frame = Frame {
         scene,
+        cancel,
         settings,
         plan,
         tables,
@@ -187,6 +191,7 @@ pub fn render_frame(
             SphereCache::Thesis => SphereTerms::Thesis(sphere_terms),
         },
         around_eye,
+        keeps_seen: film.planes().any() || settings.visibility == Visibility::Subsample,
         keeps_planes: film.planes().any(),
         keeps_normals: film.planes().normal,
         encoder: Encoder::new(settings),

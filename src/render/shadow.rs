@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use super::gather;
 use super::queue::ShadowQueue;
-use super::shade::add;
+use super::samples::Colors;
 use super::stats::CacheCounts;
 use super::tile::Worker;
 use crate::geometry::{AnyHit, NO_PRIMITIVE, NextCrossing, Opaque, Packet, PrimitiveIndex, Search, Stack, Visitor};
@@ -21,7 +21,7 @@ pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &
             continue;
         }
         if lit_by_eye || !frame.plan.shadows {
-            queue.add_gains(color);
+            queue.add_gains(simd, color);
             queue.clear();
             continue;
         }
@@ -33,10 +33,16 @@ pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &
 
 impl ShadowQueue {
     /// Adds every gain as if nothing were in the way.
-    fn add_gains(&self, color: &mut [[f32; 3]]) {
-        for at in 0..self.len() {
-            add(color, self.sample[at], self.gain.get(at));
-        }
+    fn add_gains<S: Simd>(&self, simd: S, color: &mut Colors) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for at in (0..self.len()).step_by(S::f32s::LEN) {
+                    let lanes = (self.len() - at).min(S::f32s::LEN);
+                    color.add(simd, &self.sample[at..at + S::f32s::LEN], (1 << lanes) - 1, self.gain.load(simd, at));
+                }
+            },
+        );
     }
 }
 
@@ -46,7 +52,7 @@ fn resolve_light<S: Simd>(
     queue: &mut ShadowQueue,
     last_blocker: &mut PrimitiveIndex,
     stack: &mut Stack,
-    color: &mut [[f32; 3]],
+    color: &mut Colors,
     counts: &mut CacheCounts,
 ) {
     simd.vectorize(
@@ -77,10 +83,8 @@ fn resolve_light<S: Simd>(
                     let open = visitor.blocked.select(S::f32s::splat(simd, 0.0), distance);
                     gain = gain * transmittance(simd, frame, &search, &packet, listed, open, stack);
                 }
-                let blocked = visitor.blocked.to_bitmask();
-                for lane in (0..lanes).filter(|lane| blocked >> lane & 1 == 0) {
-                    add(color, queue.sample[at + lane], gain.lane(lane));
-                }
+                let open = !visitor.blocked.to_bitmask() & ((1 << lanes) - 1);
+                color.add(simd, &queue.sample[at..at + S::f32s::LEN], open, gain);
             }
         },
     );

@@ -45,10 +45,11 @@ fn trace_pixels<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, pixels: &[[u16
 
 /// Shades the hits in `worker.rays`, whose samples start from black.
 fn shade_queue<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
-    for at in 0..worker.rays.len() {
-        let sample = worker.rays.sample[at] as usize;
-        worker.color[sample] = [0.0; 3];
-        worker.seen[sample] = Seen { primitive: worker.rays.primitive[at], t: worker.rays.t[at], normal: [0.0; 3] };
+    if frame.keeps_seen {
+        for at in 0..worker.rays.len() {
+            let sample = worker.rays.sample[at] as usize;
+            worker.seen[sample] = Seen { primitive: worker.rays.primitive[at], t: worker.rays.t[at], normal: [0.0; 3] };
+        }
     }
     worker.shade_paths(simd, frame);
 }
@@ -81,7 +82,7 @@ fn append_pixels<S: Simd>(
 ) {
     let first = rays.extend_from(frame.camera.eye, media, pixels.len());
     for (at, &[x, y]) in (first..).zip(pixels) {
-        rays.sample[at] = super::tile::sample_at(x.into(), y.into());
+        rays.sample[at] = super::samples::sample_at(x.into(), y.into());
         // The direction's columns hold the picture coordinates until `aim` turns them into directions.
         rays.direction.x[at] = (pass.x + usize::from(x)) as f32;
         rays.direction.y[at] = (pass.y + usize::from(y)) as f32;

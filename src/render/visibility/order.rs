@@ -1,13 +1,7 @@
 //! The order in which a tile's pixels follow each other, so that those of a block, of a cell and of a packet lie together.
 
-/// Edge of the blocks that are first asked what they can see, in pixels.
-pub const BLOCK: usize = 32;
-/// Edge of the blocks that a block is split into.
-pub const HALF: usize = 16;
-/// Edge of the smallest blocks, the cells.
-pub const CELL: usize = 8;
-/// Edge of a packet's square of pixels.
-const PACKET: usize = 4;
+use crate::render::film::TILE;
+use crate::render::samples::{BLOCK, CELL, HALF, pixel_at};
 
 /// A rectangle of a tile's pixels that follow each other.
 #[derive(Clone, Copy, Debug)]
@@ -35,11 +29,11 @@ pub struct Order {
     size: [usize; 2],
     /// Pixels in order.
     pub pixels: Vec<[u16; 2]>,
-    /// All blocks; each is followed by its halves in `halves`, and each of these by its cells in `cells`.
+    /// Its blocks.
     pub blocks: Vec<Area>,
-    /// Four a block.
+    /// Four a block, in the blocks' order.
     pub halves: Vec<Area>,
-    /// Four a half.
+    /// Four a half, in the halves' order.
     pub cells: Vec<Area>,
 }
 
@@ -54,47 +48,28 @@ impl Order {
         self.blocks.clear();
         self.halves.clear();
         self.cells.clear();
-        for [x, y] in corners([0, 0], [width, height], BLOCK) {
-            let start = self.pixels.len();
-            for half in quarters([x, y], BLOCK) {
-                let start = self.pixels.len();
-                for cell in quarters(half, HALF) {
-                    let start = self.pixels.len();
-                    for packet in quarters(cell, CELL) {
-                        self.append_packet(packet);
-                    }
-                    self.cells.push(self.area(cell, CELL, start));
+        // In the order of their numbers.
+        for sample in 0..(TILE * TILE) as u32 {
+            let [x, y] = pixel_at(sample);
+            let corner = [usize::from(x), usize::from(y)];
+            for (areas, edge) in [(&mut self.blocks, BLOCK), (&mut self.halves, HALF), (&mut self.cells, CELL)] {
+                if sample as usize % (edge * edge) == 0 {
+                    areas.push(area(corner, edge, [width, height], self.pixels.len()));
                 }
-                self.halves.push(self.area(half, HALF, start));
             }
-            self.blocks.push(self.area([x, y], BLOCK, start));
+            if corner[0] < width && corner[1] < height {
+                self.pixels.push([x, y]);
+            }
         }
-    }
-
-    fn append_packet(&mut self, [left, top]: [usize; 2]) {
-        let [width, height] = self.size;
-        for y in top..(top + PACKET).min(height) {
-            self.pixels.extend((left..(left + PACKET).min(width)).map(|x| [x as u16, y as u16]));
-        }
-    }
-
-    fn area(&self, [x, y]: [usize; 2], edge: usize, start: usize) -> Area {
-        let [width, height] = self.size;
-        let within = |at: usize, size: usize| size.saturating_sub(at).min(edge);
-        let (width, height) = (within(x, width), within(y, height));
-        let empty = width == 0 || height == 0;
-        Area { x, y, width: if empty { 0 } else { width }, height: if empty { 0 } else { height }, start }
     }
 }
 
-/// Corners of the squares that fill a rectangle.
-fn corners([left, top]: [usize; 2], [right, bottom]: [usize; 2], edge: usize) -> impl Iterator<Item = [usize; 2]> {
-    (top..bottom).step_by(edge).flat_map(move |y| (left..right).step_by(edge).map(move |x| [x, y]))
-}
-
-/// Corners of a square's quarters.
-fn quarters([x, y]: [usize; 2], edge: usize) -> impl Iterator<Item = [usize; 2]> {
-    corners([x, y], [x + edge, y + edge], edge / 2)
+/// The part of a square that lies within a tile of the given size.
+fn area([x, y]: [usize; 2], edge: usize, [width, height]: [usize; 2], start: usize) -> Area {
+    let within = |at: usize, size: usize| size.saturating_sub(at).min(edge);
+    let (width, height) = (within(x, width), within(y, height));
+    let empty = width == 0 || height == 0;
+    Area { x, y, width: if empty { 0 } else { width }, height: if empty { 0 } else { height }, start }
 }
 
 #[cfg(test)]
