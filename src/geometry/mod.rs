@@ -26,6 +26,7 @@ pub use traverse::{Search, SphereTerms, Stack};
 pub use visitor::{AnyHit, ClosestHit, NextCrossing, Opaque, Visitor};
 
 use bvh::{Bvh, Leaf};
+use glam::Vec3;
 use primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 
 /// Where a primitive lies: its type, its block and its place there.
@@ -226,6 +227,29 @@ impl Geometry {
     /// Whether there is nothing to hit.
     pub fn is_empty(&self) -> bool {
         self.ids.is_empty()
+    }
+
+    /// Unit normal and a point of the plane that a primitive lies in; `None` if it is not flat.
+    pub fn plane_of(&self, primitive: PrimitiveIndex) -> Option<(Vec3, Vec3)> {
+        let slot = self.slots[primitive as usize];
+        let (block, place) = (slot.block as usize, usize::from(slot.place));
+        match slot.kind {
+            PrimitiveKind::Triangle => {
+                let [ax, ay, az, bx, by, bz, cx, cy, cz, _] = self.triangles[block].get(place);
+                let [a, b, c] = [Vec3::new(ax, ay, az), Vec3::new(bx, by, bz), Vec3::new(cx, cy, cz)];
+                (b - a).cross(c - a).try_normalize().map(|normal| (normal, a))
+            }
+            PrimitiveKind::Disk => {
+                let [x, y, z, nx, ny, nz, _] = self.disks[block].get(place);
+                Some((Vec3::new(nx, ny, nz), Vec3::new(x, y, z)))
+            }
+            PrimitiveKind::Plane => {
+                let [x, y, z, distance] = self.planes[block].get(place);
+                let normal = Vec3::new(x, y, z);
+                Some((normal, normal * distance))
+            }
+            PrimitiveKind::Sphere | PrimitiveKind::Cone => None,
+        }
     }
 
     /// Largest magnitude of any coordinate of anything finite.

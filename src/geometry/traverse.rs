@@ -184,7 +184,7 @@ macro_rules! define_leaf_tests {
             /// Tests the primitives of a leaf that lie at the given places. Not inlined: the traversals around it are
             /// compiled for every level and visitor, and each would hold every kernel.
             fn visit_places<S: Simd, V: Visitor<S>>(
-                &self, simd: S, leaf: Leaf, places: Range<usize>, packet: &Packet<S>, visitor: &mut V,
+                &self, simd: S, leaf: Leaf, places: Range<usize>, rays: &Rays<S::f32s>, visitor: &mut V,
             ) {
                 simd.vectorize(
                     #[inline(always)]
@@ -196,7 +196,7 @@ macro_rules! define_leaf_tests {
                                 if visitor.accepts(index) {
                                     let t_min = visitor.t_min(index);
                                     let (mask, t) =
-                                        test_place!($kernel, $blocks, self, simd, leaf.block as usize, place, &packet.rays, t_min);
+                                        test_place!($kernel, $blocks, self, simd, leaf.block as usize, place, rays, t_min);
                                     visitor.hit(mask & t.simd_le(visitor.limit()), t, index);
                                 }
                             }
@@ -213,7 +213,7 @@ macro_rules! define_leaf_tests {
                 let len = match leaf.kind {
                     $(PrimitiveKind::$kernel => self.geometry.$blocks[leaf.block as usize].len,)+
                 };
-                self.visit_places(simd, leaf, 0..len as usize, packet, visitor);
+                self.visit_places(simd, leaf, 0..len as usize, &packet.rays, visitor);
             }
         }
     };
@@ -227,12 +227,12 @@ impl Search<'_> {
         &self,
         simd: S,
         primitive: PrimitiveIndex,
-        packet: &Packet<S>,
+        rays: &Rays<S::f32s>,
         visitor: &mut V,
     ) {
         let slot = self.geometry.slots[primitive as usize];
         let place = usize::from(slot.place);
-        self.visit_places(simd, Leaf { kind: slot.kind, block: slot.block }, place..place + 1, packet, visitor);
+        self.visit_places(simd, Leaf { kind: slot.kind, block: slot.block }, place..place + 1, rays, visitor);
     }
 }
 

@@ -9,7 +9,7 @@ use super::materials::Materials;
 use super::queue::MOST_LANES;
 use super::tables::Row;
 use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, SurfacePoint, Triangle, for_each_primitive};
-use crate::geometry::{BLOCK, Block, Geometry, NO_PRIMITIVE, Packet, PrimitiveKind, Rays, Slot};
+use crate::geometry::{BLOCK, Block, Geometry, NO_PRIMITIVE, PrimitiveKind, Rays, Slot};
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -287,7 +287,7 @@ pub(super) fn transmission<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     primitives: &S::u32s,
-    packet: &Packet<S>,
+    rays: &Rays<S::f32s>,
     t: S::f32s,
 ) -> V3<S::f32s> {
     let hits = Hits::new(simd, primitives.as_slice());
@@ -298,7 +298,7 @@ pub(super) fn transmission<S: Simd>(
     let materials = Materials::new(simd, frame, &hits);
     let mut color = materials.triple(simd, Row::Color);
     if frame.plan.textures && materials.any(|m| m.color_texture.is_some()) {
-        let surfaces = surfaces(simd, frame, &hits, packet.rays.origin, packet.rays.direction, t);
+        let surfaces = surfaces(simd, frame, &hits, rays.origin, rays.direction, t);
         materials.look_up(simd, frame, &hits, &surfaces, &mut color, &mut V3::zero(simd));
     }
     let crossed = Mask::<S>::from_bitmask(simd, hits.active);

@@ -279,7 +279,7 @@ pub struct ShadowQueue {
     /// Distance of the light.
     pub distance: Vec<f32>,
     pub sample: Vec<u32>,
-    /// The primitive that the ray leaves, where that is flat and so cannot shadow itself; else [`NO_PRIMITIVE`].
+    /// The primitive that the ray leaves, where it cannot come back to it; else [`NO_PRIMITIVE`].
     pub source: Vec<u32>,
     /// How many shadow rays there were when each [`RUN`] of shaded rays began, and at the end: the rays
     /// `runs[k]..runs[k + 1]` start where the rays of run k hit, close together.

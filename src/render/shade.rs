@@ -165,12 +165,14 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
     let reflectance = Reflectance::gather(simd, frame, &materials, color, opacity);
     let samples = S::u32s::from_slice(simd, samples);
     let primitives = S::u32s::from_slice(simd, hits.primitives);
-    let flat = Mask::<S>::from_bitmask(simd, surfaces.flat);
-    let source = flat.select(primitives, S::u32s::splat(simd, NO_PRIMITIVE));
+    // All shapes are flat or, from outside, convex: a ray that leaves their outside does not come back.
+    let convex = Mask::<S>::from_bitmask(simd, surfaces.flat) | !view.from_behind;
     for (light, queue) in frame.lights.iter().zip(shadows) {
         let Some((reaching, to_light, distance, gain)) = light_gain(simd, light, &lit, &reflectance) else {
             continue;
         };
+        let gone = convex & lit.facing.dot(to_light).simd_gt(S::f32s::splat(simd, 0.0));
+        let source = gone.select(primitives, S::u32s::splat(simd, NO_PRIMITIVE));
         let start = leave::start::<S>(lit.position, lit.facing, lit.margin, to_light);
         let reach = leave::reach::<S>(distance, lit.margin);
         queue.push_lanes::<S>(reaching, start, to_light, reach, gain, samples, source);

@@ -25,8 +25,7 @@ pub struct Worker {
     pub(super) found: RayQueue,
     pub(super) shadows: Vec<ShadowQueue>,
     pub(super) media: Media,
-    /// For each light the primitive that blocked it last in this tile: the thesis's shadow-object cache.
-    pub(super) last_blocker: Vec<PrimitiveIndex>,
+    pub(super) shadow_scratch: shadow::ShadowScratch,
     /// Colour of each sample of the tile's grid.
     pub(super) color: Colors,
     /// What each sample sees, and how far away.
@@ -115,8 +114,7 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, tile: &mut FilmTile, w
 impl Worker {
     fn begin_tile(&mut self, frame: &Frame<'_>) {
         self.shadows.resize_with(frame.lights.len(), ShadowQueue::default);
-        self.last_blocker.clear();
-        self.last_blocker.resize(frame.lights.len(), NO_PRIMITIVE);
+        self.shadow_scratch.begin_tile(frame.lights.len());
         self.color.prepare();
         self.seen.resize(SAMPLES, Seen::NOTHING);
     }

@@ -28,7 +28,7 @@ pub(super) fn test_primitive<S: Simd>(simd: S, frame: &Frame<'_>, primitive: u32
         #[inline(always)]
         || {
             for_each_packet(simd, &search, rays, first, frame.camera.near, frame.camera.far, |packet, visitor| {
-                search.test_one(simd, primitive, packet, visitor);
+                search.test_one(simd, primitive, &packet.rays, visitor);
             });
         },
     );

@@ -1,16 +1,18 @@
 //! The walk through the tree that lists what a beam can meet.
 
-use super::list::Candidates;
+use super::list::{Candidates, bounds_of};
 use super::outline::Outline;
 use super::projection::{Beam, Cover};
 use crate::geometry::bvh::{Bvh, Child, Leaf};
 use crate::geometry::primitive::{Cone, Disk, Plane, Sphere, Triangle, for_each_primitive};
 use crate::geometry::traverse::{Pending, STACK, Stack};
 use crate::geometry::{BLOCK, PrimitiveKind, Search};
-use fearless_simd::{Simd, f32x8};
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8, u32x8};
 
 impl Search<'_> {
-    /// Lists everything that a ray of the beam can hit in front of `cover`. False if that is too much to list.
+    /// Lists everything that a ray of the beam can hit in front of `cover`. False if that is too much to list. Stops at
+    /// something that blocks all rays, if the beam asks for that.
     pub fn collect<S: Simd>(
         &self,
         simd: S,
@@ -23,7 +25,7 @@ impl Search<'_> {
         match &self.geometry.bvh {
             Some(bvh) if self.use_bvh => {
                 self.list_all(simd, &[PrimitiveKind::Plane], beam, candidates)
-                    && self.list_tree(simd, bvh, beam, candidates, &mut stack.0)
+                    && (candidates.blocked || self.list_tree(simd, bvh, beam, candidates, &mut stack.0))
             }
             _ => self.list_all(simd, PrimitiveKind::ALL, beam, candidates),
         }
@@ -42,6 +44,9 @@ impl Search<'_> {
                     return false;
                 }
                 self.list_block(simd, Leaf { kind, block }, beam, candidates);
+                if candidates.blocked {
+                    return true;
+                }
             }
         }
         true
@@ -69,6 +74,9 @@ impl Search<'_> {
                                 return false;
                             }
                             self.list_block(simd, leaf, beam, candidates);
+                            if candidates.blocked {
+                                return true;
+                            }
                             continue;
                         }
                         Child::Node(number) => &bvh.nodes[number as usize],
@@ -116,10 +124,20 @@ macro_rules! define_list_block {
                             for (place, number) in places.iter_mut().zip(0..) {
                                 *place += number;
                             }
-                            let Candidates { $blocks, cover, .. } = candidates;
-                            $blocks.sift::<$kernel, S, f32x8<S>, $fields>(
-                                &outlines, &places, block.len as usize, beam, cover,
-                            );
+                            let ignored = u32x8::from_slice(simd, &block.indices).simd_eq(beam.ignored).to_bitmask();
+                            let used = ((1 << block.len) - 1) & !ignored;
+                            let Candidates { $blocks, cover, blocked, .. } = candidates;
+                            if beam.blocking.is_some() {
+                                let mut covering = $kernel::covers(&outlines, beam).to_bitmask() & used;
+                                while covering != 0 {
+                                    let lane = covering.trailing_zeros() as usize;
+                                    covering &= covering - 1;
+                                    let (nearest, farthest) =
+                                        bounds_of::<$kernel, S, f32x8<S>, $fields, $outline>(&outlines, lane, beam);
+                                    *blocked |= beam.is_blocked_by(block.indices[lane], nearest, farthest);
+                                }
+                            }
+                            $blocks.sift::<$kernel, S, f32x8<S>, $fields>(&outlines, &places, used, beam, cover);
                         })+
                     },
                 );

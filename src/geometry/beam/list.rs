@@ -78,34 +78,30 @@ impl<const M: usize> List<M> {
         outlines
     }
 
-    /// Appends what of the first `count` lanes the beam can meet in front of the cover, and moves the cover up to the
-    /// nearest that covers the beam.
+    /// Appends what of the lanes in the bit set `used` the beam can meet in front of the cover, and moves the cover up to
+    /// the nearest primitive that covers the beam.
     #[inline(always)]
     pub(super) fn sift<K: Outline<N, M>, S: Simd, F: Lanes<S>, const N: usize>(
         &mut self,
         outlines: &[F; M],
         places: &[u32],
-        count: usize,
+        used: u64,
         beam: &Beam<'_>,
         cover: &mut Cover,
     ) {
-        let used = (1_u64 << count) - 1;
         let missed = K::misses(outlines, beam) | is_behind(K::nearest(outlines), beam, cover);
         let kept = !missed.to_bitmask() & used;
         if kept == 0 {
             return;
         }
-        let mut covering = K::covers(outlines, beam).to_bitmask() & kept;
-        while covering != 0 {
-            let lane = covering.trailing_zeros() as usize;
-            covering &= covering - 1;
-            let mut outline = [0.0; M];
-            for (number, lanes) in outline.iter_mut().zip(outlines) {
-                *number = lanes[lane];
+        if beam.blocking.is_none() {
+            let mut covering = K::covers(outlines, beam).to_bitmask() & kept;
+            while covering != 0 {
+                let (nearest, farthest) =
+                    bounds_of::<K, S, F, N, M>(outlines, covering.trailing_zeros() as usize, beam);
+                cover.move_up(nearest, farthest, beam);
+                covering &= covering - 1;
             }
-            let [nearest_x, nearest_y, nearest_z] = K::nearest(outlines);
-            let nearest = [nearest_x[lane], nearest_y[lane], nearest_z[lane]];
-            cover.move_up(nearest, K::farthest(&outline, beam), beam);
         }
         let simd = outlines[0].token();
         self.append::<S, F>(F::Mask::from_bitmask(simd, kept), outlines, places);
@@ -124,9 +120,24 @@ impl<const M: usize> List<M> {
         for at in (0..larger.len).step_by(S::f32s::LEN) {
             let outlines: [S::f32s; M] = larger.load(simd, at);
             let count = (larger.len - at).min(S::f32s::LEN);
-            self.sift::<K, S, S::f32s, N>(&outlines, &larger.places[at..at + count], count, beam, cover);
+            self.sift::<K, S, S::f32s, N>(&outlines, &larger.places[at..at + count], (1 << count) - 1, beam, cover);
         }
     }
+}
+
+/// Upper and lower bound of the nearness of one lane's primitive.
+#[inline(always)]
+pub(super) fn bounds_of<K: Outline<N, M>, S: Simd, F: Lanes<S>, const N: usize, const M: usize>(
+    outlines: &[F; M],
+    lane: usize,
+    beam: &Beam<'_>,
+) -> ([f32; 3], [f32; 3]) {
+    let mut outline = [0.0; M];
+    for (number, lanes) in outline.iter_mut().zip(outlines) {
+        *number = lanes[lane];
+    }
+    let [x, y, z] = K::nearest(outlines);
+    ([x[lane], y[lane], z[lane]], K::farthest(&outline, beam))
 }
 
 macro_rules! define_candidates {
@@ -137,6 +148,8 @@ macro_rules! define_candidates {
             $(#[doc = concat!("Candidates of type ", stringify!($kernel), ".")] pub $blocks: List<$outline>,)+
             /// The nearest cover found.
             pub cover: Cover,
+            /// Whether something blocks all rays, if the beam asks for that.
+            pub blocked: bool,
         }
 
         impl Candidates {
@@ -149,6 +162,7 @@ macro_rules! define_candidates {
             pub fn restart(&mut self, cover: Cover) {
                 $(self.$blocks.clear();)+
                 self.cover = cover;
+                self.blocked = false;
             }
 
             /// Whether a block of any type still fits.

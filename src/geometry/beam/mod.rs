@@ -18,7 +18,7 @@ mod resolve;
 
 pub use list::Candidates;
 pub use outline::Outline;
-pub use projection::{Beam, Cover, Projection};
+pub use projection::{Beam, Blocking, Cover, Projection};
 
 /// What a kernel's verdict can be off by, as a share of the largest coordinate in play: a hundred rounding errors.
 /// The kernels' own paddings, the transformations into a beam's space, and the directions' rounding go into it.

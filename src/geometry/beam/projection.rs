@@ -2,6 +2,7 @@
 
 use super::SLACK;
 use crate::geometry::bvh::{Node, WIDTH};
+use crate::geometry::{NO_PRIMITIVE, Opaque, PrimitiveIndex};
 use crate::math::{Lanes, V3};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
@@ -137,6 +138,15 @@ impl Cover {
     }
 }
 
+/// Which covers block all rays of a beam.
+#[derive(Clone, Copy, Debug)]
+pub struct Blocking<'a> {
+    /// What blocks light altogether.
+    pub opaque: Opaque<'a>,
+    /// Covers must be nearer than this all over: the rays end there.
+    pub least_nearness: f32,
+}
+
 /// The rays q = (x, y, 1) of a rectangle, borders included.
 #[derive(Clone, Copy, Debug)]
 pub struct Beam<'a> {
@@ -154,6 +164,10 @@ pub struct Beam<'a> {
     pub side_lengths: [f32; 4],
     /// Covers must be less near than this: rays do not see what is nearer.
     pub greatest_nearness: f32,
+    /// A primitive that the rays do not see.
+    pub ignored: PrimitiveIndex,
+    /// For rays that only ask whether anything is in the way: what blocks them all.
+    pub blocking: Option<Blocking<'a>>,
     walls: [HalfSpace; 4],
 }
 
@@ -189,6 +203,8 @@ impl<'a> Beam<'a> {
             corners: corners.map(Vec3::normalize),
             side_lengths: [x[0], x[1], y[0], y[1]].map(length),
             greatest_nearness: f32::INFINITY,
+            ignored: NO_PRIMITIVE,
+            blocking: None,
             walls: [left, right_wall, bottom, top],
         }
     }
@@ -198,6 +214,11 @@ impl<'a> Beam<'a> {
         // What lies at depth z is seen at a distance of z or more.
         let greatest_nearness = if near > 0.0 { (1.0 - 1e-4) / near } else { f32::INFINITY };
         Self { greatest_nearness, ..self }
+    }
+
+    /// The beam of rays that do not see `ignored` and only ask whether anything is in their way.
+    pub fn asking(self, ignored: PrimitiveIndex, blocking: Blocking<'a>) -> Self {
+        Self { ignored, blocking: Some(blocking), ..self }
     }
 
     /// Which of a node's boxes hold something that a ray can meet in front of `cover`.
@@ -220,6 +241,15 @@ impl<'a> Beam<'a> {
             nearest = f32x8::from_slice(simd, faces).mul_add(f32x8::splat(simd, component), nearest);
         }
         nearest
+    }
+
+    /// Whether a covering primitive with the given bounds of nearness blocks all rays.
+    pub(super) fn is_blocked_by(&self, primitive: PrimitiveIndex, nearest: [f32; 3], farthest: [f32; 3]) -> bool {
+        self.blocking.is_some_and(|blocking| {
+            blocking.opaque.contains(primitive)
+                && self.range_of(nearest).1 < self.greatest_nearness
+                && self.range_of(farthest).0 > blocking.least_nearness
+        })
     }
 
     /// The least and the greatest value of a linear form over the rectangle.
