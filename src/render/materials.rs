@@ -156,12 +156,7 @@ fn look_up<S: Simd>(
 
 /// Texture coordinates that the corners of triangles carry, interpolated; 0 where they carry none.
 #[inline(always)]
-fn vertex_coordinates<S: Simd>(
-    simd: S,
-    frame: &Frame<'_>,
-    hits: &Hits<'_>,
-    surfaces: &Surfaces<S>,
-) -> [S::f32s; 2] {
+fn vertex_coordinates<S: Simd>(simd: S, frame: &Frame<'_>, hits: &Hits<'_>, surfaces: &Surfaces<S>) -> [S::f32s; 2] {
     let corners = hits.gather::<S, 6>(
         simd,
         #[inline(always)]

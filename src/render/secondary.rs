@@ -113,13 +113,7 @@ pub(super) fn follow<S: Simd>(
 
 impl Transparent {
     #[inline(always)]
-    fn new<S: Simd>(
-        simd: S,
-        frame: &Frame<'_>,
-        hits: &Hits<'_>,
-        materials: &Materials<'_, S>,
-        spawning: u64,
-    ) -> Self {
+    fn new<S: Simd>(simd: S, frame: &Frame<'_>, hits: &Hits<'_>, materials: &Materials<'_, S>, spawning: u64) -> Self {
         let mut found = Self { lanes: 0, bodies: 0, objects: [0; MOST_LANES] };
         if !frame.plan.coloured_shadows {
             return found;

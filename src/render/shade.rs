@@ -201,7 +201,18 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
         };
         simd.vectorize(
             #[inline(always)]
-            || secondary::follow(simd, frame, &hits, &materials, &incident, media, [mirrored, refracted], &mut stats.rays),
+            || {
+                secondary::follow(
+                    simd,
+                    frame,
+                    &hits,
+                    &materials,
+                    &incident,
+                    media,
+                    [mirrored, refracted],
+                    &mut stats.rays,
+                )
+            },
         );
     }
 }

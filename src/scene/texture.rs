@@ -61,8 +61,8 @@ impl ImageTexture {
         let [bottom, top] = [(last - bottom) * width, (last - top) * width];
         let low = self.texels(simd, bottom + left, lanes).scale(one - across)
             + self.texels(simd, bottom + right, lanes).scale(across);
-        let high =
-            self.texels(simd, top + left, lanes).scale(one - across) + self.texels(simd, top + right, lanes).scale(across);
+        let high = self.texels(simd, top + left, lanes).scale(one - across)
+            + self.texels(simd, top + right, lanes).scale(across);
         low.scale(one - up) + high.scale(up)
     }
 
@@ -78,8 +78,7 @@ impl ImageTexture {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
             let [r, g, b] = self.texels[indices[lane] as usize];
-            (x[lane], y[lane], z[lane]) =
-                (decode[usize::from(r)], decode[usize::from(g)], decode[usize::from(b)]);
+            (x[lane], y[lane], z[lane]) = (decode[usize::from(r)], decode[usize::from(g)], decode[usize::from(b)]);
         }
         found
     }
