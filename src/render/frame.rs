@@ -217,3 +217,68 @@ pub fn render_frame(
     stats.frame_ms = start.elapsed().as_secs_f64() * 1e3;
     stats
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::Planes;
+    use crate::scene::{LoadOptions, load_embedded};
+    use std::time::Duration;
+
+    /// Twelve panes of glass in a row, each a body of its own.
+    fn panes() -> Scene {
+        let pane =
+            |i: i32| format!(r#"{{ "type": "box", "min": [-9, -9, {i}], "max": [9, 9, {i}.5], "material": "glass" }}"#);
+        let panes: Vec<String> = (0..12).map(pane).collect();
+        let text = format!(
+            r#"{{ "version": 1, "camera": {{ "position": [0.3, 0.2, -3], "look_at": [0, 0, 0] }},
+                  "materials": {{ "glass": {{ "transparency": 1, "absorption": [0.1, 0, 0] }} }},
+                  "lights": [{{ "type": "point", "position": [0, 5, -5] }}], "objects": [{}] }}"#,
+            panes.join(",")
+        );
+        let text: &'static [u8] = Box::leak(text.into_bytes().into_boxed_slice());
+        let files = Box::leak(Box::new([("panes.json", text)]));
+        load_embedded("panes.json", files, &LoadOptions::default()).expect("the panes are a valid scene")
+    }
+
+    fn deep() -> Settings {
+        Settings { depth: Some(20), ..Settings::default() }
+    }
+
+    #[test]
+    fn memory_grows_with_depth_and_not_with_the_number_of_paths() {
+        let scene = panes();
+        let mut scratch = Scratch::new();
+        let mut film = Film::new(4, 4, Planes::default());
+        let stats = render_frame(&scene, &scene.cameras[0].camera, &deep(), &mut scratch, &mut film);
+        let rays = stats.rays.reflection + stats.rays.refraction;
+        assert!(rays > 16 << 17, "{rays} rays are no test");
+        for worker in &scratch.pool.expect("a frame was rendered").workers {
+            let room = worker.lock().expect("no worker panicked").room();
+            assert!(room < 21 * 2 * 64, "room for {room} rays and bodies after {rays} rays");
+        }
+    }
+
+    #[test]
+    fn a_frame_stops_within_a_tile() {
+        let scene = panes();
+        let mut scratch = Scratch::new();
+        let cancel = scratch.cancel.clone();
+        let mut film = Film::new(64, 64, Planes::default());
+        let start = Instant::now();
+        let stats = std::thread::scope(|threads| {
+            threads.spawn(|| {
+                std::thread::sleep(Duration::from_millis(100));
+                cancel.cancel();
+            });
+            render_frame(&scene, &scene.cameras[0].camera, &deep(), &mut scratch, &mut film)
+        });
+        assert!(!stats.completed && start.elapsed() < Duration::from_secs(5), "stopped after {:?}", start.elapsed());
+        // The queues that were left do not reach the next frame.
+        cancel.reset();
+        let settings = Settings { depth: Some(3), ..Settings::default() };
+        let after = render_frame(&scene, &scene.cameras[0].camera, &settings, &mut scratch, &mut film);
+        let fresh = render_frame(&scene, &scene.cameras[0].camera, &settings, &mut Scratch::new(), &mut film);
+        assert_eq!(after.rays, fresh.rays);
+    }
+}

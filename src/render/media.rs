@@ -32,6 +32,12 @@ impl Media {
         around_eye.iter().fold(OUTSIDE, |list, &object| self.enter(list, object))
     }
 
+    /// Bodies that there is memory for.
+    #[cfg(test)]
+    pub fn room(&self) -> usize {
+        self.entries.capacity()
+    }
+
     /// Where the arena ends now.
     pub fn mark(&self) -> MediaMark {
         MediaMark(self.entries.len())

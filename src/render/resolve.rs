@@ -29,14 +29,19 @@ impl Encoder {
             ToneMap::None => exposed,
             ToneMap::Neutral => neutral(simd, exposed),
         };
-        let mut bits = [[SrgbTable::LEAST; MOST_LANES]; 3];
-        for (bits, channel) in bits.iter_mut().zip([mapped.x, mapped.y, mapped.z]) {
-            SrgbTable::clamp(simd, channel).store_slice(&mut bits[..S::f32s::LEN]);
+        let (mut bits, mut buckets) = ([[0; MOST_LANES]; 3], [[0; MOST_LANES]; 3]);
+        for (channel, lanes) in [mapped.x, mapped.y, mapped.z].into_iter().enumerate() {
+            let clamped = SrgbTable::clamp(simd, lanes);
+            clamped.store_slice(&mut bits[channel][..S::f32s::LEN]);
+            SrgbTable::buckets::<S>(clamped).store_slice(&mut buckets[channel][..S::f32s::LEN]);
         }
-        let mut pixels = [[0, 0, 0, 255]; MOST_LANES];
+        let mut pixels = [[0; 4]; MOST_LANES];
         for (lane, pixel) in pixels.iter_mut().enumerate().take(S::f32s::LEN) {
-            let [r, g, b] = [bits[0][lane], bits[1][lane], bits[2][lane]];
-            *pixel = [self.table.encode(r), self.table.encode(g), self.table.encode(b), 255];
+            let mut rgba = u32::from_le_bytes([0, 0, 0, 255]);
+            for channel in 0..3 {
+                rgba |= self.table.encode(buckets[channel][lane], bits[channel][lane]) << (8 * channel);
+            }
+            *pixel = rgba.to_le_bytes();
         }
         pixels
     }
@@ -108,11 +113,16 @@ impl SrgbTable {
         linear.simd_lt(one).select(linear, one).bitcast()
     }
 
+    /// The buckets of clamped values.
+    #[inline(always)]
+    fn buckets<S: Simd>(bits: S::u32s) -> S::u32s {
+        (bits - Self::LEAST) >> Self::SHIFT
+    }
+
     /// Encodes the bits of a clamped linear value to the nearest sRGB byte (IEC 61966-2-1).
     #[inline(always)]
-    fn encode(&self, bits: u32) -> u8 {
-        let bucket = (bits - Self::LEAST) >> Self::SHIFT;
-        ((self.0[bucket as usize % Self::ROOM] + u64::from(bits)) >> 32) as u8
+    fn encode(&self, bucket: u32, bits: u32) -> u32 {
+        ((self.0[bucket as usize % Self::ROOM] + u64::from(bits)) >> 32) as u32
     }
 }
 

@@ -84,7 +84,7 @@ fn absorb<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
     for at in (0..rays.len()).step_by(S::f32s::LEN) {
         let lists = &rays.media[at..at + S::f32s::LEN];
         let lanes = S::u32s::from_slice(simd, lists);
-        let mut left = lanes.simd_ne(OUTSIDE).to_bitmask();
+        let mut left = lanes.simd_ne(OUTSIDE).to_bitmask() & present::<S>(rays, at);
         while left != 0 {
             let list = lists[left.trailing_zeros() as usize];
             let same = lanes.simd_eq(list);
@@ -100,6 +100,12 @@ fn absorb<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
             }
         }
     }
+}
+
+/// Bit set of the lanes of the packet at `at` that are rays and not padding.
+#[inline(always)]
+fn present<S: Simd>(rays: &RayQueue, at: usize) -> u64 {
+    (1 << (rays.len() - at).min(S::f32s::LEN)) - 1
 }
 
 /// What is left after a way through a body.
@@ -124,7 +130,7 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
     let lanes = at..at + S::f32s::LEN;
     let Worker { rays, mirrored, refracted, shadows, media, color: colors, seen, stats, .. } = worker;
     let hits = Hits::new(simd, &rays.primitive[lanes.clone()]);
-    let (samples, present) = (&rays.sample[lanes.clone()], (1 << (rays.len() - at).min(S::f32s::LEN)) - 1);
+    let (samples, present) = (&rays.sample[lanes.clone()], present::<S>(rays, at));
     let weight: V3<S::f32s> = rays.weight.load(simd, at);
     let background = weight * V3::splat(simd, frame.scene.render.background);
     if hits.active == 0 {

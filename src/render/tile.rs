@@ -119,6 +119,13 @@ impl Worker {
         self.seen.resize(SAMPLES, Seen::NOTHING);
     }
 
+    /// Rays and bodies that there is memory for, in queues that rays follow each other through.
+    #[cfg(test)]
+    pub(super) fn room(&self) -> usize {
+        let queues = [&self.rays, &self.mirrored, &self.refracted].into_iter().chain(&self.spare);
+        queues.map(|queue| queue.t.capacity()).sum::<usize>() + self.media.room()
+    }
+
     /// Averages `side` x `side` passes, in row order. What the planes hold stays that of the pixels' centres.
     fn render_grid<S: Simd>(&mut self, simd: S, frame: &Frame<'_>, centre: &Pass, side: u32) {
         let seen = std::mem::take(&mut self.seen);
