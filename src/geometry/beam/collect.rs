@@ -1,9 +1,9 @@
 //! The walk through the tree that lists what a beam can meet.
 
-use super::list::{Candidates, bounds_of};
+use super::list::Candidates;
 use super::outline::Outline;
 use super::projection::{Beam, Cover};
-use crate::geometry::bvh::{Bvh, Child, Leaf};
+use crate::geometry::bvh::{Bvh, Child, Leaf, WIDTH};
 use crate::geometry::primitive::{Cone, Disk, Plane, Sphere, Triangle, for_each_primitive};
 use crate::geometry::traverse::{Pending, STACK, Stack};
 use crate::geometry::{BLOCK, PrimitiveKind, Search};
@@ -47,6 +47,9 @@ impl Search<'_> {
                 if candidates.blocked {
                     return true;
                 }
+                if candidates.len() > beam.most {
+                    return false;
+                }
             }
         }
         true
@@ -63,6 +66,7 @@ impl Search<'_> {
         simd.vectorize(
             #[inline(always)]
             || {
+                let walls = beam.walls();
                 stack[0] = Pending { child: Child::Node(0), near: 0.0 };
                 let mut depth = 1;
                 while depth > 0 {
@@ -77,14 +81,21 @@ impl Search<'_> {
                             if candidates.blocked {
                                 return true;
                             }
+                            if candidates.len() > beam.most {
+                                return false;
+                            }
                             continue;
                         }
                         Child::Node(number) => &bvh.nodes[number as usize],
                     };
-                    let mut met = beam.meets(simd, node, &candidates.cover);
+                    let mut outside = candidates.cover.not_behind.excludes(simd, node);
+                    for wall in &walls {
+                        outside |= wall.excludes(simd, node);
+                    }
+                    let mut met = !outside & ((1 << WIDTH) - 1);
                     let depths = beam.depths(simd, node);
                     let bottom = depth;
-                    if bottom + BLOCK > STACK {
+                    if bottom + WIDTH > STACK {
                         return false;
                     }
                     while met != 0 {
@@ -127,17 +138,9 @@ macro_rules! define_list_block {
                             let ignored = u32x8::from_slice(simd, &block.indices).simd_eq(beam.ignored).to_bitmask();
                             let used = ((1 << block.len) - 1) & !ignored;
                             let Candidates { $blocks, cover, blocked, .. } = candidates;
-                            if beam.blocking.is_some() {
-                                let mut covering = $kernel::covers(&outlines, beam).to_bitmask() & used;
-                                while covering != 0 {
-                                    let lane = covering.trailing_zeros() as usize;
-                                    covering &= covering - 1;
-                                    let (nearest, farthest) =
-                                        bounds_of::<$kernel, S, f32x8<S>, $fields, $outline>(&outlines, lane, beam);
-                                    *blocked |= beam.is_blocked_by(block.indices[lane], nearest, farthest);
-                                }
-                            }
-                            $blocks.sift::<$kernel, S, f32x8<S>, $fields>(&outlines, &places, used, beam, cover);
+                            *blocked |= $blocks.sift::<$kernel, S, f32x8<S>, $fields>(
+                                &outlines, &places, used, &self.geometry.$blocks, beam, cover,
+                            );
                         })+
                     },
                 );

@@ -3,7 +3,7 @@
 use super::outline::{Outline, is_behind};
 use super::projection::{Beam, Cover};
 use crate::geometry::primitive::{Cone, Disk, Plane, Sphere, Triangle, for_each_primitive};
-use crate::geometry::{BLOCK, Geometry, PrimitiveIndex};
+use crate::geometry::{BLOCK, Block, Geometry};
 use crate::math::Lanes;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -39,9 +39,9 @@ impl<const M: usize> List<M> {
         self.len == 0
     }
 
-    /// Block and place within it of each.
-    pub fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.places[..self.len].iter().map(|&place| (place as usize / BLOCK, place as usize % BLOCK))
+    /// Where they lie.
+    fn places(&self) -> &[u32] {
+        &self.places[..self.len]
     }
 
     /// Empties the list.
@@ -69,6 +69,35 @@ impl<const M: usize> List<M> {
         }
     }
 
+    /// Appends where those candidates lie that the beam can meet, moving the cover up as it goes.
+    #[inline(always)]
+    fn select<K: Outline<N, M>, S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        beam: &Beam<'_>,
+        cover: &mut Cover,
+        places: &mut Vec<u32>,
+    ) {
+        for at in (0..self.len).step_by(S::f32s::LEN) {
+            let outlines: [S::f32s; M] = self.load(simd, at);
+            let missed = K::misses(&outlines, beam) | is_behind(K::nearest(&outlines), beam, cover);
+            let present = (1 << (self.len - at).min(S::f32s::LEN)) - 1;
+            let kept = !missed.to_bitmask() & present;
+            let mut covering = K::covers(&outlines, beam).to_bitmask() & kept;
+            while covering != 0 {
+                let (nearest, farthest) =
+                    bounds_of::<K, S, S::f32s, N, M>(&outlines, covering.trailing_zeros() as usize, beam);
+                cover.move_up(nearest, farthest, beam);
+                covering &= covering - 1;
+            }
+            let mut lanes = kept;
+            while lanes != 0 {
+                places.push(self.places[at + lanes.trailing_zeros() as usize]);
+                lanes &= lanes - 1;
+            }
+        }
+    }
+
     #[inline(always)]
     fn load<S: Simd, F: Lanes<S>>(&self, simd: S, at: usize) -> [F; M] {
         let mut outlines = [F::splat(simd, 0.0); M];
@@ -79,32 +108,40 @@ impl<const M: usize> List<M> {
     }
 
     /// Appends what of the lanes in the bit set `used` the beam can meet in front of the cover, and moves the cover up to
-    /// the nearest primitive that covers the beam.
+    /// the nearest primitive that covers the beam. If the beam asks what blocks all of its rays, covers are asked that
+    /// instead, and the answer is returned.
     #[inline(always)]
     pub(super) fn sift<K: Outline<N, M>, S: Simd, F: Lanes<S>, const N: usize>(
         &mut self,
         outlines: &[F; M],
         places: &[u32],
         used: u64,
+        blocks: &[Block<N>],
         beam: &Beam<'_>,
         cover: &mut Cover,
-    ) {
+    ) -> bool {
         let missed = K::misses(outlines, beam) | is_behind(K::nearest(outlines), beam, cover);
         let kept = !missed.to_bitmask() & used;
         if kept == 0 {
-            return;
+            return false;
         }
-        if beam.blocking.is_none() {
-            let mut covering = K::covers(outlines, beam).to_bitmask() & kept;
-            while covering != 0 {
-                let (nearest, farthest) =
-                    bounds_of::<K, S, F, N, M>(outlines, covering.trailing_zeros() as usize, beam);
+        let mut covering = K::covers(outlines, beam).to_bitmask() & kept;
+        while covering != 0 {
+            let lane = covering.trailing_zeros() as usize;
+            covering &= covering - 1;
+            let (nearest, farthest) = bounds_of::<K, S, F, N, M>(outlines, lane, beam);
+            if beam.blocking.is_none() {
                 cover.move_up(nearest, farthest, beam);
-                covering &= covering - 1;
+            } else {
+                let (block, place) = place_of(places[lane]);
+                if beam.is_blocked_by(blocks[block].indices[place], nearest, farthest) {
+                    return true;
+                }
             }
         }
         let simd = outlines[0].token();
         self.append::<S, F>(F::Mask::from_bitmask(simd, kept), outlines, places);
+        false
     }
 
     /// Replaces the list by what of `larger` the beam can meet.
@@ -113,21 +150,32 @@ impl<const M: usize> List<M> {
         &mut self,
         simd: S,
         larger: &Self,
+        blocks: &[Block<N>],
         beam: &Beam<'_>,
         cover: &mut Cover,
-    ) {
+    ) -> bool {
         self.len = 0;
         for at in (0..larger.len).step_by(S::f32s::LEN) {
             let outlines: [S::f32s; M] = larger.load(simd, at);
             let count = (larger.len - at).min(S::f32s::LEN);
-            self.sift::<K, S, S::f32s, N>(&outlines, &larger.places[at..at + count], (1 << count) - 1, beam, cover);
+            let places = &larger.places[at..at + count];
+            if self.sift::<K, S, S::f32s, N>(&outlines, places, (1 << count) - 1, blocks, beam, cover) {
+                return true;
+            }
         }
+        false
     }
+}
+
+/// Block and place within it.
+#[inline(always)]
+fn place_of(place: u32) -> (usize, usize) {
+    (place as usize / BLOCK, place as usize % BLOCK)
 }
 
 /// Upper and lower bound of the nearness of one lane's primitive.
 #[inline(always)]
-pub(super) fn bounds_of<K: Outline<N, M>, S: Simd, F: Lanes<S>, const N: usize, const M: usize>(
+fn bounds_of<K: Outline<N, M>, S: Simd, F: Lanes<S>, const N: usize, const M: usize>(
     outlines: &[F; M],
     lane: usize,
     beam: &Beam<'_>,
@@ -171,25 +219,57 @@ macro_rules! define_candidates {
                 true $(&& self.$blocks.has_room())+
             }
 
-            /// The candidates, type by type and within a type from front to back, if that is how they were found.
-            pub fn primitives<'a>(&'a self, geometry: &'a Geometry) -> impl Iterator<Item = PrimitiveIndex> + 'a {
-                std::iter::empty()
-                    $(.chain(self.$blocks.places().map(|(block, place)| geometry.$blocks[block].indices[place])))+
-            }
-
             /// Replaces the candidates by those of `larger` that a beam within that one's can meet.
-            pub fn filter<S: Simd>(&mut self, simd: S, larger: &Self, beam: &Beam<'_>) {
+            pub fn filter<S: Simd>(&mut self, simd: S, geometry: &Geometry, larger: &Self, beam: &Beam<'_>) {
                 self.cover = larger.cover;
+                self.blocked = false;
                 simd.vectorize(
                     #[inline(always)]
                     || {
                         $(if larger.$blocks.is_empty() {
                             self.$blocks.clear();
                         } else {
-                            self.$blocks.refill::<$kernel, S, $fields>(simd, &larger.$blocks, beam, &mut self.cover);
+                            let blocks = &geometry.$blocks;
+                            self.blocked |= self.$blocks.refill::<$kernel, S, $fields>(
+                                simd, &larger.$blocks, blocks, beam, &mut self.cover,
+                            );
                         })+
                     },
                 );
+            }
+        }
+
+        /// Where candidates lie: block and place within it, type by type.
+        #[derive(Clone, Debug, Default)]
+        pub struct Places {
+            $($blocks: Vec<u32>,)+
+        }
+
+        impl Places {
+            $(
+                #[doc = concat!("Places of type ", stringify!($kernel), ".")]
+                #[inline(always)]
+                pub fn $blocks(&self) -> impl Iterator<Item = (usize, usize)> {
+                    self.$blocks.iter().map(#[inline(always)] |&place| place_of(place))
+                }
+            )+
+
+            /// Replaces the places by those of all candidates.
+            pub fn take_all(&mut self, candidates: &Candidates) {
+                $(
+                    self.$blocks.clear();
+                    self.$blocks.extend_from_slice(candidates.$blocks.places());
+                )+
+            }
+
+            /// Replaces the places by those of the candidates that a beam within theirs can meet.
+            #[inline(always)]
+            pub fn select<S: Simd>(&mut self, simd: S, candidates: &Candidates, beam: &Beam<'_>) {
+                let mut cover = candidates.cover;
+                $(
+                    self.$blocks.clear();
+                    candidates.$blocks.select::<$kernel, S, $fields>(simd, beam, &mut cover, &mut self.$blocks);
+                )+
             }
         }
     };

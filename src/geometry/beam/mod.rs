@@ -16,7 +16,7 @@ mod outline;
 mod projection;
 mod resolve;
 
-pub use list::Candidates;
+pub use list::{Candidates, Places};
 pub use outline::Outline;
 pub use projection::{Beam, Blocking, Cover, Projection};
 

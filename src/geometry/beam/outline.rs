@@ -131,7 +131,7 @@ impl Outline<10, TRIANGLE> for Triangle {
         let longest = longest_squared.sqrt();
         // A hit is off by rounding errors of projected corners, which a needle's small area multiplies; and beyond
         // the triangle's own box no kernel sees a hit, so that distances from corners are at most twice the longest side.
-        let side_margin = (longest + slack) * slack * (12.0 * beam.longest);
+        let side_margin = (longest + slack) * slack * (12.0 * beam.longest());
         let (sides, turned, certain, nearest, farthest);
         if projection.parallel {
             sides = [side(to_b, a), side(b_to_c, b), side(-to_c, c)];
@@ -254,9 +254,9 @@ impl Outline<4, PLANE> for Plane {
             certain = height.abs().simd_gt(slack * CERTAIN);
             let plane = times([normal.x, normal.y, normal.z], one / height);
             // A ray nearly along the plane is off by the rounding of its own direction.
-            let grazing = F::splat(simd, share * beam.longest) / height.abs();
+            let grazing = F::splat(simd, share * beam.longest()) / height.abs();
             let off = slack * 2.0 / height.abs();
-            horizon = times(plane, height.abs() * (1.0 / (share * beam.longest)));
+            horizon = times(plane, height.abs() * (1.0 / (share * beam.longest())));
             let [a, b, c] = times(plane, one + off);
             nearest = [a, b, c + grazing];
             let [a, b, c] = times(plane, one - off);
@@ -290,7 +290,7 @@ impl Outline<4, PLANE> for Plane {
 /// How far inside of each of the beam's sides a ball reaches. `w` is z in perspective, 1 in parallel projection.
 #[inline(always)]
 fn ball_heights<S: Simd, F: Lanes<S>>([x, y, w, radius]: [F; 4], beam: &Beam<'_>) -> [F; 4] {
-    let [left, right, bottom, top] = beam.side_lengths;
+    let [left, right, bottom, top] = beam.side_lengths();
     [
         x - w * beam.x[0] + radius * left,
         w * beam.x[1] - x + radius * right,
@@ -338,7 +338,7 @@ impl Outline<4, BALL> for Sphere {
         }
         // From inside it hides only what is outside of it all, which is seldom worth a test.
         let mut covered = center.dot(center).simd_gt(larger * larger);
-        for corner in beam.corners {
+        for corner in beam.corners() {
             let corner = V3::splat(x.token(), corner);
             let along = center.dot(corner);
             let aside = center - corner.scale(along);
@@ -408,7 +408,7 @@ impl Outline<7, DISK> for Disk {
         if beam.projection.parallel {
             return covered & smaller.simd_lt(0.0);
         }
-        for corner in beam.corners {
+        for corner in beam.corners() {
             let corner = V3::splat(x.token(), corner);
             let t = height / normal.dot(corner);
             let aside = corner.scale(t) - center;

@@ -1,7 +1,7 @@
 //! The space in which a beam is a rectangle, and the beam in it.
 
 use super::SLACK;
-use crate::geometry::bvh::{Node, WIDTH};
+use crate::geometry::bvh::Node;
 use crate::geometry::{NO_PRIMITIVE, Opaque, PrimitiveIndex};
 use crate::math::{Lanes, V3};
 use fearless_simd::prelude::*;
@@ -59,15 +59,27 @@ impl Projection {
         self.turn(point - V3::splat(simd, self.apex))
     }
 
+    /// A range with as much more as directions may be off.
+    #[inline]
+    fn widen(&self, range: [f32; 2]) -> [f32; 2] {
+        let by = if self.parallel { self.slack } else { self.slack_share * (1.0 + largest_magnitude(range)) };
+        [range[0] - by, range[1] + by]
+    }
+
     /// The world vector whose product with a vector is `form`'s with its view coordinates.
     fn normal_of(&self, form: [f32; 3]) -> Vec3 {
         self.right * form[0] + self.up * form[1] + self.forward * form[2]
     }
 }
 
+/// The larger magnitude of a range's ends.
+fn largest_magnitude([from, to]: [f32; 2]) -> f32 {
+    from.abs().max(to.abs())
+}
+
 /// The points p with normal·p >= offset.
 #[derive(Clone, Copy, Debug)]
-struct HalfSpace {
+pub(super) struct HalfSpace {
     normal: Vec3,
     offset: f32,
 }
@@ -80,7 +92,7 @@ impl HalfSpace {
 
     /// Which of a node's boxes lie outside.
     #[inline(always)]
-    fn excludes<S: Simd>(&self, simd: S, node: &Node) -> u32 {
+    pub(super) fn excludes<S: Simd>(&self, simd: S, node: &Node) -> u32 {
         let mut farthest = f32x8::splat(simd, 0.0);
         for axis in 0..3 {
             let component = self.normal[axis];
@@ -99,7 +111,7 @@ pub struct Cover {
     /// Whether there is one.
     pub hides: bool,
     /// What is not entirely behind it.
-    not_behind: HalfSpace,
+    pub(super) not_behind: HalfSpace,
 }
 
 impl Default for Cover {
@@ -156,57 +168,60 @@ pub struct Beam<'a> {
     pub x: [f32; 2],
     /// Least and greatest y.
     pub y: [f32; 2],
-    /// Length of q at most.
-    pub longest: f32,
-    /// Unit directions of the corners in view coordinates, in perspective.
-    pub corners: [Vec3; 4],
-    /// For each side (x least, x greatest, y least, y greatest) the length of its plane's normal in view coordinates.
-    pub side_lengths: [f32; 4],
     /// Covers must be less near than this: rays do not see what is nearer.
     pub greatest_nearness: f32,
     /// A primitive that the rays do not see.
     pub ignored: PrimitiveIndex,
+    /// More candidates than this are not listed.
+    pub most: usize,
     /// For rays that only ask whether anything is in the way: what blocks them all.
     pub blocking: Option<Blocking<'a>>,
-    walls: [HalfSpace; 4],
 }
 
 impl<'a> Beam<'a> {
     /// The beam of a rectangle; it is widened a little, as much as directions may be rounded.
+    #[inline]
     pub fn new(projection: &'a Projection, x: [f32; 2], y: [f32; 2]) -> Self {
-        let widen = |[from, to]: [f32; 2]| {
-            let most = from.abs().max(to.abs());
-            let by = if projection.parallel { projection.slack } else { projection.slack_share * (1.0 + most) };
-            [from - by, to + by]
-        };
-        let (x, y) = (widen(x), widen(y));
-        let Projection { apex, right, up, forward, parallel, slack, .. } = *projection;
-        let wall = |axis: Vec3, [from, to]: [f32; 2]| {
-            [(1.0, from), (-1.0, to)].map(|(sign, at)| {
-                if parallel {
-                    let normal = axis * sign;
-                    HalfSpace { normal, offset: normal.dot(apex) + sign * at - 2.0 * slack }
-                } else {
-                    HalfSpace::through((axis - forward * at) * sign, apex, slack)
-                }
-            })
-        };
-        let ([left, right_wall], [bottom, top]) = (wall(right, x), wall(up, y));
-        let length = |at: f32| if parallel { 1.0 } else { (1.0 + at * at).sqrt() };
-        let corners = [[x[0], y[0]], [x[1], y[0]], [x[0], y[1]], [x[1], y[1]]].map(|[x, y]| Vec3::new(x, y, 1.0));
-        let longest = if parallel { 1.0 } else { corners.iter().fold(0.0, |most: f32, q| most.max(q.length())) };
         Self {
             projection,
-            x,
-            y,
-            longest,
-            corners: corners.map(Vec3::normalize),
-            side_lengths: [x[0], x[1], y[0], y[1]].map(length),
+            x: projection.widen(x),
+            y: projection.widen(y),
             greatest_nearness: f32::INFINITY,
             ignored: NO_PRIMITIVE,
+            most: usize::MAX,
             blocking: None,
-            walls: [left, right_wall, bottom, top],
         }
+    }
+
+    /// Half-spaces between which the beam lies.
+    pub(super) fn walls(&self) -> [HalfSpace; 4] {
+        let Projection { apex, right, up, forward, parallel, slack, .. } = *self.projection;
+        let wall = |axis: Vec3, sign: f32, at: f32| {
+            if parallel {
+                let normal = axis * sign;
+                HalfSpace { normal, offset: normal.dot(apex) + sign * at - 2.0 * slack }
+            } else {
+                HalfSpace::through((axis - forward * at) * sign, apex, slack)
+            }
+        };
+        [wall(right, 1.0, self.x[0]), wall(right, -1.0, self.x[1]), wall(up, 1.0, self.y[0]), wall(up, -1.0, self.y[1])]
+    }
+
+    /// The length of q is at most this.
+    pub(super) fn longest(&self) -> f32 {
+        if self.projection.parallel { 1.0 } else { 1.0 + largest_magnitude(self.x) + largest_magnitude(self.y) }
+    }
+
+    /// Unit directions of the corners in view coordinates, in perspective.
+    pub(super) fn corners(&self) -> [Vec3; 4] {
+        let ([left, right], [bottom, top]) = (self.x, self.y);
+        [[left, bottom], [right, bottom], [left, top], [right, top]].map(|[x, y]| Vec3::new(x, y, 1.0).normalize())
+    }
+
+    /// For each side (x least, x greatest, y least, y greatest) the length of its plane's normal in view coordinates.
+    pub(super) fn side_lengths(&self) -> [f32; 4] {
+        let length = |at: f32| if self.projection.parallel { 1.0 } else { (1.0 + at * at).sqrt() };
+        [self.x[0], self.x[1], self.y[0], self.y[1]].map(length)
     }
 
     /// The beam of rays that see nothing nearer than `near` along them.
@@ -216,19 +231,10 @@ impl<'a> Beam<'a> {
         Self { greatest_nearness, ..self }
     }
 
-    /// The beam of rays that do not see `ignored` and only ask whether anything is in their way.
-    pub fn asking(self, ignored: PrimitiveIndex, blocking: Blocking<'a>) -> Self {
-        Self { ignored, blocking: Some(blocking), ..self }
-    }
-
-    /// Which of a node's boxes hold something that a ray can meet in front of `cover`.
-    #[inline(always)]
-    pub(super) fn meets<S: Simd>(&self, simd: S, node: &Node, cover: &Cover) -> u32 {
-        let mut outside = cover.not_behind.excludes(simd, node);
-        for wall in &self.walls {
-            outside |= wall.excludes(simd, node);
-        }
-        !outside & ((1 << WIDTH) - 1)
+    /// The beam of rays that do not see `ignored` and only ask whether anything is in their way, if that is one of at
+    /// most `most` things.
+    pub fn asking(self, ignored: PrimitiveIndex, blocking: Blocking<'a>, most: usize) -> Self {
+        Self { ignored, blocking: Some(blocking), most, ..self }
     }
 
     /// How deep along `forward` a node's boxes begin.

@@ -1,6 +1,6 @@
 //! The candidates of a beam, tested ray by ray.
 
-use super::list::Candidates;
+use super::list::Places;
 use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Triangle, for_each_primitive};
 use crate::geometry::traverse::test_place;
 use crate::geometry::{Rays, Search, Visitor};
@@ -10,16 +10,16 @@ use fearless_simd::prelude::*;
 macro_rules! define_resolve {
     ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
         impl Search<'_> {
-            /// Shows `visitor` every hit of the candidates that can matter to it.
+            /// Shows `visitor` every hit of the primitives at the given places that can matter to it.
             #[inline(always)]
             pub fn resolve<S: Simd, V: Visitor<S>>(
                 &self,
                 simd: S,
-                candidates: &Candidates,
+                places: &Places,
                 rays: &Rays<S::f32s>,
                 visitor: &mut V,
             ) {
-                $(for (block, place) in candidates.$blocks.places() {
+                $(for (block, place) in places.$blocks() {
                     let index = self.geometry.$blocks[block].indices[place];
                     if visitor.accepts(index) {
                         let t_min = visitor.t_min(index);

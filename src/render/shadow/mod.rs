@@ -8,7 +8,7 @@ use super::queue::ShadowQueue;
 use super::samples::Colors;
 use super::stats::CacheCounts;
 use super::tile::{Worker, milliseconds_since};
-use crate::geometry::beam::Candidates;
+use crate::geometry::beam::{Candidates, Places};
 use crate::geometry::{AnyHit, NO_PRIMITIVE, Opaque, Packet, PrimitiveIndex, Rays, Search, Stack, Visitor};
 use crate::math::V3;
 use crate::settings::Visibility;
@@ -16,22 +16,25 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use std::ops::Range;
 use std::time::Instant;
-use verdict::Verdict;
+use verdict::{Judge, Verdict};
 
 /// What a thread keeps for shadow rays.
 #[derive(Debug, Default)]
 pub struct ShadowScratch {
     /// For each light the primitive that blocked it last in this tile: the thesis's shadow-object cache.
     last_blocker: Vec<PrimitiveIndex>,
-    /// What can be in the way of the rays that are looked at.
-    candidates: Option<Candidates>,
+    lists: Option<Box<Lists>>,
+}
+
+/// What can be in the way of a run of rays, and of a part of it.
+#[derive(Debug, Default)]
+struct Lists {
+    whole: Candidates,
+    part: Candidates,
+    places: Places,
 }
 
 impl ShadowScratch {
-    fn take_candidates(&mut self) -> Candidates {
-        self.candidates.take().unwrap_or_default()
-    }
-
     /// Forgets what the last tile found.
     pub fn begin_tile(&mut self, lights: usize) {
         self.last_blocker.clear();
@@ -81,36 +84,90 @@ fn resolve_light<S: Simd>(simd: S, frame: &Frame<'_>, light: usize, queue: &mut 
         let all = 0..queue.len();
         return resolve_rays(simd, frame, light, queue, all, &Occluders { search, listed: None }, worker);
     }
-    let mut candidates = worker.shadow_scratch.take_candidates();
+    let mut lists = worker.shadow_scratch.lists.take().unwrap_or_default();
     for run in queue.runs.windows(2) {
         let range = run[0] as usize..run[1] as usize;
-        if range.is_empty() {
-            continue;
+        if !range.is_empty() {
+            resolve_run(simd, frame, light, queue, range, &search, &mut lists, worker);
         }
-        let start = Instant::now();
-        let kind = frame.lights[light].kind;
-        let stack = &mut worker.stack;
-        let verdict = verdict::judge(simd, frame, &search, kind, queue, range.clone(), &mut candidates, stack);
-        worker.stats.stages_ms.certificate += milliseconds_since(start);
-        let listed = match verdict {
-            Verdict::Dark => continue,
-            Verdict::Lit => {
-                queue.add_gains(simd, range, &mut worker.color);
-                continue;
-            }
-            Verdict::Listed => Some(&candidates),
-            Verdict::Unknown => None,
-        };
-        resolve_rays(simd, frame, light, queue, range, &Occluders { search, listed }, worker);
     }
-    worker.shadow_scratch.candidates = Some(candidates);
+    worker.shadow_scratch.lists = Some(lists);
+}
+
+/// Fewer candidates are not worth being sifted for parts of a run.
+const FEW: usize = 3;
+
+/// Rays in such a part.
+const PART: usize = 64;
+
+/// Resolves shadow rays of one light that start close together.
+fn resolve_run<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    light: usize,
+    queue: &ShadowQueue,
+    range: Range<usize>,
+    search: &Search<'_>,
+    lists: &mut Lists,
+    worker: &mut Worker,
+) {
+    let start = Instant::now();
+    let judge = Judge::new(simd, frame, *search, frame.lights[light].kind, queue, range.clone());
+    let verdict = match &judge {
+        Some(judge) => judge.judge(simd, &mut lists.whole, &mut worker.stack),
+        None => Verdict::Unknown,
+    };
+    worker.stats.stages_ms.certificate += milliseconds_since(start);
+    match (verdict, &judge) {
+        (Verdict::Listed, Some(judge)) if lists.whole.len() > FEW => {
+            let parts = (range.len() / PART).max(1);
+            for part in 0..parts {
+                let at = |part: usize| range.start + range.len() * part / parts;
+                let own = at(part)..at(part + 1);
+                let verdict = judge.judge_part(simd, queue, own.clone(), &lists.whole, &mut lists.part);
+                lists.places.take_all(if verdict == Verdict::Unknown { &lists.whole } else { &lists.part });
+                let verdict = if verdict == Verdict::Unknown { Verdict::Listed } else { verdict };
+                resolve_judged(simd, frame, light, queue, own, verdict, search, &lists.places, worker);
+            }
+        }
+        _ => {
+            lists.places.take_all(&lists.whole);
+            resolve_judged(simd, frame, light, queue, range, verdict, search, &lists.places, worker);
+        }
+    }
+}
+
+/// Does what a verdict asks for.
+fn resolve_judged<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    light: usize,
+    queue: &ShadowQueue,
+    range: Range<usize>,
+    verdict: Verdict,
+    search: &Search<'_>,
+    places: &Places,
+    worker: &mut Worker,
+) {
+    match verdict {
+        Verdict::Dark => {}
+        Verdict::Lit => queue.add_gains(simd, range, &mut worker.color),
+        Verdict::Listed => {
+            let occluders = Occluders { search: *search, listed: Some(places) };
+            resolve_rays(simd, frame, light, queue, range, &occluders, worker);
+        }
+        Verdict::Unknown => {
+            let occluders = Occluders { search: *search, listed: None };
+            resolve_rays(simd, frame, light, queue, range, &occluders, worker);
+        }
+    }
 }
 
 /// Where to look for what is in a ray's way.
 struct Occluders<'a> {
     search: Search<'a>,
     /// All that can be in the way, if that is known.
-    listed: Option<&'a Candidates>,
+    listed: Option<&'a Places>,
 }
 
 impl Occluders<'_> {
@@ -118,7 +175,7 @@ impl Occluders<'_> {
     #[inline(always)]
     fn visit<S: Simd, V: Visitor<S>>(&self, simd: S, rays: &Rays<S::f32s>, stack: &mut Stack, visitor: &mut V) {
         match self.listed {
-            Some(candidates) => self.search.resolve(simd, candidates, rays, visitor),
+            Some(places) => self.search.resolve(simd, places, rays, visitor),
             None => {
                 let packet = Packet::new(self.search.geometry, rays.origin, rays.direction);
                 self.search.traverse(simd, &packet, stack, visitor);

@@ -1,7 +1,7 @@
 //! Many shadow rays at once: a beam from the light tells whether all arrive, or none, or what can be in their way.
 
 use crate::geometry::beam::{Beam, Blocking, Candidates, Cover, Projection};
-use crate::geometry::{NO_PRIMITIVE, Search, Stack};
+use crate::geometry::{NO_PRIMITIVE, Opaque, PrimitiveIndex, Search, Stack};
 use crate::math::V3;
 use crate::render::frame::Frame;
 use crate::render::queue::ShadowQueue;
@@ -36,69 +36,108 @@ const WIDEST: f32 = 0.5;
 /// Covers must be farther from a light than so many times what beams allow for: rays end a little before it.
 const LEAST_DISTANCE: f32 = 32.0;
 
-/// Judges the shadow rays in `range` of a light's queue.
-pub(super) fn judge<S: Simd>(
-    simd: S,
-    frame: &Frame<'_>,
-    search: &Search<'_>,
-    light: LightKind,
-    queue: &ShadowQueue,
-    range: Range<usize>,
-    candidates: &mut Candidates,
-    stack: &mut Stack,
-) -> Verdict {
-    if range.len() < LEAST_RAYS {
-        return Verdict::Unknown;
-    }
-    let middle = queue.origin.get(range.start + range.len() / 2);
-    let (apex, forward, parallel) = match light {
-        LightKind::Point { position } | LightKind::Spot { position, .. } => (position, middle - position, false),
-        LightKind::Directional { direction } => (middle, direction, true),
-    };
-    let forward = forward.normalize();
-    if !forward.is_finite() {
-        return Verdict::Unknown;
-    }
-    let right = forward.any_orthonormal_vector();
-    let axes = [right, right.cross(forward), forward];
-    let unbounded = Projection::new(apex, axes, parallel, 0.0, 0.0);
-    let Some(extent) = simd.vectorize(
-        #[inline(always)]
-        || Extent::of(simd, &unbounded, queue, range.clone()),
-    ) else {
-        return Verdict::Unknown;
-    };
-    let reach = search.geometry.reach().max(extent.reach);
-    let projection = Projection::new(apex, axes, parallel, reach, frame.beam_margin);
-    let slack = projection.slack;
-    let [nearest, farthest] = extent.z;
-    let width = (extent.x[1] - extent.x[0]).max(extent.y[1] - extent.y[0]);
-    if !parallel && (nearest < LEAST_DISTANCE * slack || width > WIDEST) {
-        return Verdict::Unknown;
+/// A light's view of the starts of shadow rays that lie close together.
+pub(super) struct Judge<'a> {
+    search: Search<'a>,
+    opaque: Opaque<'a>,
+    projection: Projection,
+    /// What nothing that matters lies behind.
+    receiver: Cover,
+    /// The one primitive that all rays leave and cannot come back to.
+    source: PrimitiveIndex,
+    extent: Extent,
+}
+
+impl<'a> Judge<'a> {
+    /// A judge of the shadow rays in `range` of a light's queue; `None` if they are too few or too far apart.
+    pub fn new<S: Simd>(
+        simd: S,
+        frame: &'a Frame<'_>,
+        search: Search<'a>,
+        light: LightKind,
+        queue: &ShadowQueue,
+        range: Range<usize>,
+    ) -> Option<Self> {
+        if range.len() < LEAST_RAYS {
+            return None;
+        }
+        let middle = queue.origin.get(range.start + range.len() / 2);
+        let (apex, forward, parallel) = match light {
+            LightKind::Point { position } | LightKind::Spot { position, .. } => (position, middle - position, false),
+            LightKind::Directional { direction } => (middle, direction, true),
+        };
+        let forward = forward.try_normalize()?;
+        let right = forward.any_orthonormal_vector();
+        let axes = [right, right.cross(forward), forward];
+        let extent = Extent::of(simd, &Projection::new(apex, axes, parallel, 0.0, 0.0), queue, range.clone())?;
+        let reach = search.geometry.reach().max(extent.reach);
+        let projection = Projection::new(apex, axes, parallel, reach, frame.beam_margin);
+        let slack = projection.slack;
+        let width = (extent.x[1] - extent.x[0]).max(extent.y[1] - extent.y[0]);
+        if !parallel && (extent.z[0] < LEAST_DISTANCE * slack || width > WIDEST) {
+            return None;
+        }
+        let source = common_source(simd, queue, range);
+        let behind = source
+            .and_then(|source| search.geometry.plane_of(source))
+            .and_then(|plane| behind_plane(&projection, plane))
+            .unwrap_or([0.0, 0.0, nearness(&projection, extent.z[1] + 4.0 * slack)]);
+        let receiver = Cover::new(&projection, behind);
+        let (opaque, source) = (frame.tables.opaque(), source.unwrap_or(NO_PRIMITIVE));
+        Some(Self { search, opaque, projection, receiver, source, extent })
     }
 
-    let nearness = |z: f32| if parallel { -z } else { 1.0 / z };
-    let source = common_source(simd, queue, range);
-    let receiver = source.and_then(|source| search.geometry.plane_of(source));
-    let behind = receiver.and_then(|plane| behind_plane(&projection, plane)).unwrap_or([
-        0.0,
-        0.0,
-        nearness(farthest + 4.0 * slack),
-    ]);
-    let blocking = Blocking { opaque: frame.tables.opaque(), least_nearness: nearness(nearest - 4.0 * slack) };
-    let beam = Beam::new(&projection, extent.x, extent.y)
-        .beyond(if parallel { 0.0 } else { LEAST_DISTANCE * slack })
-        .asking(source.unwrap_or(NO_PRIMITIVE), blocking);
-    let listed = search.collect(simd, &beam, Cover::new(&projection, behind), candidates, stack);
-    if candidates.blocked {
-        Verdict::Dark
-    } else if !listed || candidates.len() > MOST_CANDIDATES {
-        Verdict::Unknown
-    } else if candidates.is_empty() {
-        Verdict::Lit
-    } else {
-        Verdict::Listed
+    /// Judges all of the rays, leaving what can be in their way in `candidates`.
+    pub fn judge<S: Simd>(&self, simd: S, candidates: &mut Candidates, stack: &mut Stack) -> Verdict {
+        let beam = self.beam(&self.extent);
+        let listed = self.search.collect(simd, &beam, self.receiver, candidates, stack);
+        if listed { Verdict::of(candidates) } else { Verdict::Unknown }
     }
+
+    /// Judges some of the rays by the candidates of all, leaving what can be in their way in `own`.
+    pub fn judge_part<S: Simd>(
+        &self,
+        simd: S,
+        queue: &ShadowQueue,
+        part: Range<usize>,
+        candidates: &Candidates,
+        own: &mut Candidates,
+    ) -> Verdict {
+        let Some(extent) = Extent::of(simd, &self.projection, queue, part) else { return Verdict::Unknown };
+        own.filter(simd, self.search.geometry, candidates, &self.beam(&extent));
+        Verdict::of(own)
+    }
+
+    /// The beam from the light to starts of the given extent.
+    fn beam(&self, extent: &Extent) -> Beam<'_> {
+        let slack = self.projection.slack;
+        let least_distance = if self.projection.parallel { 0.0 } else { LEAST_DISTANCE * slack };
+        let least_nearness = nearness(&self.projection, extent.z[0] - 4.0 * slack);
+        let blocking = Blocking { opaque: self.opaque, least_nearness };
+        Beam::new(&self.projection, extent.x, extent.y).beyond(least_distance).asking(
+            self.source,
+            blocking,
+            MOST_CANDIDATES,
+        )
+    }
+}
+
+impl Verdict {
+    /// The verdict that a complete list of candidates means.
+    fn of(candidates: &Candidates) -> Self {
+        if candidates.blocked {
+            Self::Dark
+        } else if candidates.is_empty() {
+            Self::Lit
+        } else {
+            Self::Listed
+        }
+    }
+}
+
+/// The nearness at depth z.
+fn nearness(projection: &Projection, z: f32) -> f32 {
+    if projection.parallel { -z } else { 1.0 / z }
 }
 
 /// Nearness of what lies behind a receiving plane for sure, if the light is well off the plane.
@@ -144,30 +183,40 @@ struct Extent {
 }
 
 impl Extent {
-    /// The extent of the rays' starts; `None` if some are not in front of the apex. There must be a packet's worth.
-    #[inline(always)]
+    /// The extent of the rays' starts; `None` if some are not in front of the apex, or too few.
     fn of<S: Simd>(simd: S, projection: &Projection, queue: &ShadowQueue, range: Range<usize>) -> Option<Self> {
         let lanes = S::f32s::LEN;
-        let (infinity, one) = (S::f32s::splat(simd, f32::INFINITY), S::f32s::splat(simd, 1.0));
-        let (mut least, mut most) = (V3::all(infinity), V3::all(-infinity));
-        let mut reach = S::f32s::splat(simd, 0.0);
-        for at in range.clone().step_by(lanes) {
-            // The last packet overlaps the one before rather than look beyond the range.
-            let start: V3<S::f32s> = queue.origin.load(simd, at.min(range.end - lanes));
-            let view = projection.view(start);
-            let inverse = if projection.parallel { one } else { one / view.z };
-            let (x, y) = (view.x * inverse, view.y * inverse);
-            least = V3::new(least.x.min(x), least.y.min(y), least.z.min(view.z));
-            most = V3::new(most.x.max(x), most.y.max(y), most.z.max(view.z));
-            reach = reach.max(start.x.abs()).max(start.y.abs()).max(start.z.abs());
+        if range.len() < lanes {
+            return None;
         }
-        let extent = Self {
-            x: [least.x.reduce_min(), most.x.reduce_max()],
-            y: [least.y.reduce_min(), most.y.reduce_max()],
-            z: [least.z.reduce_min(), most.z.reduce_max()],
-            reach: reach.reduce_max(),
-        };
-        let finite = [extent.x, extent.y, extent.z].iter().flatten().all(|v| v.is_finite());
-        (finite && (projection.parallel || extent.z[0] > 0.0)).then_some(extent)
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let (infinity, one) = (S::f32s::splat(simd, f32::INFINITY), S::f32s::splat(simd, 1.0));
+                let (mut least, mut most) = (V3::all(infinity), V3::all(-infinity));
+                let mut reach = S::f32s::splat(simd, 0.0);
+                for at in range.clone().step_by(lanes) {
+                    // The last packet overlaps the one before rather than look beyond the range.
+                    let start: V3<S::f32s> = queue.origin.load(simd, at.min(range.end - lanes));
+                    let view = projection.view(start);
+                    let inverse = if projection.parallel { one } else { one / view.z };
+                    let (x, y) = (view.x * inverse, view.y * inverse);
+                    least = V3::new(least.x.min(x), least.y.min(y), least.z.min(view.z));
+                    most = V3::new(most.x.max(x), most.y.max(y), most.z.max(view.z));
+                    reach = reach.max(start.x.abs()).max(start.y.abs()).max(start.z.abs());
+                }
+                let extent = Self {
+                    x: [least.x.reduce_min(), most.x.reduce_max()],
+                    y: [least.y.reduce_min(), most.y.reduce_max()],
+                    z: [least.z.reduce_min(), most.z.reduce_max()],
+                    reach: reach.reduce_max(),
+                };
+                let mut finite = true;
+                for [from, to] in [extent.x, extent.y, extent.z] {
+                    finite &= from.is_finite() && to.is_finite();
+                }
+                (finite && (projection.parallel || extent.z[0] > 0.0)).then_some(extent)
+            },
+        )
     }
 }

@@ -68,7 +68,16 @@ fn queue_tile<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Wor
     let Worker { rays, order, .. } = worker;
     order.prepare(pass.width, pass.height);
     rays.clear();
-    append_pixels(simd, frame, pass, &order.pixels, media, rays);
+    let first = rays.extend_from(frame.camera.eye, media, order.samples.len());
+    rays.sample[..order.samples.len()].copy_from_slice(&order.samples);
+    for (column, places, corner) in
+        [(&mut rays.direction.x, &order.x, pass.x), (&mut rays.direction.y, &order.y, pass.y)]
+    {
+        for (at, place) in column.iter_mut().zip(places) {
+            *at = corner as f32 + place;
+        }
+    }
+    aim(simd, frame, pass.offset, first, rays);
 }
 
 /// Appends rays from the eye through the given pixels.

@@ -27,8 +27,12 @@ impl Area {
 #[derive(Debug, Default)]
 pub struct Order {
     size: [usize; 2],
-    /// Pixels in order.
-    pub pixels: Vec<[u16; 2]>,
+    /// Samples of the pixels in order.
+    pub samples: Vec<u32>,
+    /// Where the pixels lie in the tile.
+    pub x: Vec<f32>,
+    /// See `x`.
+    pub y: Vec<f32>,
     /// Its blocks.
     pub blocks: Vec<Area>,
     /// Four a block, in the blocks' order.
@@ -44,7 +48,9 @@ impl Order {
             return;
         }
         self.size = [width, height];
-        self.pixels.clear();
+        self.samples.clear();
+        self.x.clear();
+        self.y.clear();
         self.blocks.clear();
         self.halves.clear();
         self.cells.clear();
@@ -54,11 +60,13 @@ impl Order {
             let corner = [usize::from(x), usize::from(y)];
             for (areas, edge) in [(&mut self.blocks, BLOCK), (&mut self.halves, HALF), (&mut self.cells, CELL)] {
                 if sample as usize % (edge * edge) == 0 {
-                    areas.push(area(corner, edge, [width, height], self.pixels.len()));
+                    areas.push(area(corner, edge, [width, height], self.samples.len()));
                 }
             }
             if corner[0] < width && corner[1] < height {
-                self.pixels.push([x, y]);
+                self.samples.push(sample);
+                self.x.push(x.into());
+                self.y.push(y.into());
             }
         }
     }
@@ -84,7 +92,8 @@ mod tests {
             assert_eq!(order.halves.len(), 4 * order.blocks.len());
             assert_eq!(order.cells.len(), 4 * order.halves.len());
             let mut seen = vec![false; width * height];
-            for &[x, y] in &order.pixels {
+            for &sample in &order.samples {
+                let [x, y] = pixel_at(sample);
                 assert!(!std::mem::replace(&mut seen[usize::from(y) * width + usize::from(x)], true));
             }
             assert!(seen.into_iter().all(|s| s));
@@ -93,10 +102,9 @@ mod tests {
                 for area in areas {
                     assert_eq!(area.start, next);
                     next += area.pixels();
-                    for &[x, y] in &order.pixels[area.start..next] {
-                        let (x, y) = (usize::from(x), usize::from(y));
-                        assert!((area.x..area.x + area.width).contains(&x));
-                        assert!((area.y..area.y + area.height).contains(&y));
+                    for (&x, &y) in order.x[area.start..next].iter().zip(&order.y[area.start..next]) {
+                        assert!((area.x..area.x + area.width).contains(&(x as usize)));
+                        assert!((area.y..area.y + area.height).contains(&(y as usize)));
                     }
                 }
                 assert_eq!(next, width * height);
