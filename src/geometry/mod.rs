@@ -256,4 +256,10 @@ impl Geometry {
     pub fn reach(&self) -> f32 {
         if self.bounds.is_empty() { 0.0 } else { self.bounds.min.abs().max(self.bounds.max.abs()).max_element() }
     }
+
+    /// What the corners of a triangle carry; `None` for most primitives. Found by halving: for a few look-ups.
+    pub fn attributes_of(&self, primitive: PrimitiveIndex) -> Option<&VertexAttributes> {
+        let found = self.attributes.binary_search_by_key(&primitive, |(index, _)| *index).ok()?;
+        Some(&self.attributes[found].1)
+    }
 }

@@ -138,9 +138,9 @@ impl RayQueue {
 
     /// Makes room for `rays` in all.
     pub fn reserve(&mut self, rays: usize) {
+        // Exactly that much: columns whose size is a power of two would share the same sets of the cache.
         let room = rays + MOST_LANES;
         if self.t.len() < room {
-            let room = room.next_power_of_two();
             for columns in [&mut self.origin, &mut self.direction, &mut self.weight] {
                 columns.resize(room);
             }
@@ -308,7 +308,6 @@ impl ShadowQueue {
     pub fn reserve(&mut self, rays: usize) {
         let room = self.len + rays + MOST_LANES;
         if self.distance.len() < room {
-            let room = room.next_power_of_two();
             for columns in [&mut self.origin, &mut self.direction, &mut self.gain] {
                 columns.resize(room);
             }

@@ -4,7 +4,7 @@ use super::frame::Frame;
 use super::gather::{Hits, bits};
 use super::leave;
 use super::materials::Materials;
-use super::media::{Media, OUTSIDE};
+use super::media::{Media, MediaList, OUTSIDE};
 use super::queue::{MOST_LANES, RayQueue};
 use super::stats::RayCounts;
 use super::tables::Row;
@@ -88,7 +88,7 @@ pub(super) fn follow<S: Simd>(
         let weight = incident.weight * split.reflected;
         let heavy = incident.spawning & heavy(simd, weight, frame.settings.min_weight);
         if heavy.any_true() {
-            let direction = (incident.direction + incident.normal.scale(cosine * 2.0)).normalize();
+            let direction = hold_unit::<S>(incident.direction + incident.normal.scale(cosine * 2.0));
             let start = leave::start::<S>(incident.position, incident.facing, incident.margin, direction);
             mirrored.push_lanes::<S>(heavy, start, direction, weight, incident.samples, incident.media);
             counts.reflection += u64::from(heavy.to_bitmask().count_ones());
@@ -109,6 +109,12 @@ pub(super) fn follow<S: Simd>(
             counts.refraction += u64::from(heavy.to_bitmask().count_ones());
         }
     }
+}
+
+/// Takes the rounding off the length of vectors that are all but unit: one step of Newton's method for 1/sqrt from 1.
+#[inline(always)]
+fn hold_unit<S: Simd>(v: V3<S::f32s>) -> V3<S::f32s> {
+    v.scale(S::f32s::splat(v.x.token(), 1.5) - v.dot(v) * 0.5)
 }
 
 impl Transparent {
@@ -156,13 +162,19 @@ fn outside_index<S: Simd>(
 ) -> S::f32s {
     let mut index = S::f32s::splat(simd, 1.0);
     let within = transparent.lanes & incident.media.simd_ne(S::u32s::splat(simd, OUTSIDE)).to_bitmask();
-    let lists = incident.media.as_slice();
-    for lane in bits(within) {
-        if let Some(object) = media.around(lists[lane], transparent.objects[lane]) {
-            let material = &frame.scene.materials[frame.scene.objects[object as usize].material as usize];
-            index.as_mut_slice()[lane] = material.ior;
-        }
-    }
+    for_each_list(
+        simd,
+        incident,
+        &transparent.objects,
+        within,
+        #[inline(always)]
+        |list, object, lanes| {
+            if let Some(around) = media.around(list, object) {
+                let material = &frame.scene.materials[frame.scene.objects[around as usize].material as usize];
+                index = lanes.select(S::f32s::splat(simd, material.ior), index);
+            }
+        },
+    );
     index
 }
 
@@ -241,20 +253,43 @@ fn cross<S: Simd>(
     crossing: u64,
     media: &mut Media,
 ) -> S::u32s {
-    let lanes = S::u32s::from_slice(simd, &objects[..S::f32s::LEN]);
-    let (mut left, leaving) = (crossing, incident.from_behind.to_bitmask());
     let mut inside = incident.media;
-    // Rays that share their history and their object share the list: mostly, that is the whole packet.
-    while left != 0 {
-        let lane = left.trailing_zeros() as usize % MOST_LANES;
-        let (list, object, leaves) = (incident.media.as_slice()[lane], objects[lane], leaving >> lane & 1 == 1);
-        let same_way = if leaves { leaving } else { !leaving };
-        let same = incident.media.simd_eq(list).to_bitmask() & lanes.simd_eq(object).to_bitmask() & same_way & left;
-        left &= !same;
-        let next = if leaves { media.leave(list, object) } else { media.enter(list, object) };
-        inside = Mask::<S>::from_bitmask(simd, same).select(S::u32s::splat(simd, next), inside);
+    let leaving = incident.from_behind.to_bitmask();
+    for (crossing, leaves) in [(crossing & leaving, true), (crossing & !leaving, false)] {
+        for_each_list(
+            simd,
+            incident,
+            objects,
+            crossing,
+            #[inline(always)]
+            |list, object, lanes| {
+                let next = if leaves { media.leave(list, object) } else { media.enter(list, object) };
+                inside = lanes.select(S::u32s::splat(simd, next), inside);
+            },
+        );
     }
     inside
+}
+
+/// Calls `visit` for each list of bodies and each object that some of `lanes` share, with those lanes. Rays that share
+/// their history and their object share the list: mostly, that is the whole packet.
+#[inline(always)]
+fn for_each_list<S: Simd>(
+    simd: S,
+    incident: &Incident<S>,
+    objects: &[u32; MOST_LANES],
+    lanes: u64,
+    mut visit: impl FnMut(MediaList, u32, Mask<S>),
+) {
+    let (lists, all_objects) = (incident.media, S::u32s::from_slice(simd, &objects[..S::f32s::LEN]));
+    let mut left = lanes;
+    while left != 0 {
+        let lane = left.trailing_zeros() as usize % MOST_LANES;
+        let (list, object) = (lists.as_slice()[lane], objects[lane]);
+        let same = lists.simd_eq(list).to_bitmask() & all_objects.simd_eq(object).to_bitmask() & left;
+        left &= !same;
+        visit(list, object, Mask::<S>::from_bitmask(simd, same));
+    }
 }
 
 #[cfg(test)]

@@ -40,7 +40,8 @@ impl Texture {
     pub fn sample<S: Simd>(&self, simd: S, [u, v]: [S::f32s; 2], lanes: u64) -> V3<S::f32s> {
         match self {
             Self::Checker { colors: [even, odd], size } => {
-                let sum = (u / *size).floor() + (v / *size).floor();
+                let squares = 1.0 / size;
+                let sum = (u * squares).floor() + (v * squares).floor();
                 let is_even = sum.simd_eq((sum * 0.5).floor() * 2.0);
                 V3::select(is_even, V3::splat(simd, *even), V3::splat(simd, *odd))
             }
@@ -54,8 +55,9 @@ impl ImageTexture {
     #[inline(always)]
     fn sample<S: Simd>(&self, simd: S, u: S::f32s, v: S::f32s, lanes: u64) -> V3<S::f32s> {
         let one = S::f32s::splat(simd, 1.0);
-        let (left, right, across) = neighbours(simd, u / self.size, self.width);
-        let (bottom, top, up) = neighbours(simd, v / self.size, self.height);
+        let repetitions = 1.0 / self.size;
+        let (left, right, across) = neighbours(simd, u * repetitions, self.width);
+        let (bottom, top, up) = neighbours(simd, v * repetitions, self.height);
         // Rows are counted from the top, v from the bottom.
         let (width, last) = (S::u32s::splat(simd, self.width), S::u32s::splat(simd, self.height - 1));
         let [bottom, top] = [(last - bottom) * width, (last - top) * width];
