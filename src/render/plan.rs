@@ -40,7 +40,7 @@ impl Plan {
     }
 
     pub(super) fn with_tables(scene: &Scene, settings: &Settings, tables: &Tables) -> Self {
-        let has = |kind| scene.geometry.count(kind) > 0;
+        let has = |kind| scene.geometry.blocks_of(kind) > 0;
         let textured = |source: &ColorSource| matches!(source, ColorSource::Texture(_));
         let depth = settings.depth.unwrap_or(scene.render.max_depth);
         let refractions = settings.refractions && depth > 1 && !tables.opaque.is_empty();

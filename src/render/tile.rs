@@ -33,6 +33,8 @@ pub struct Worker {
     pub(super) seen: Vec<Seen>,
     pub(super) cells: visibility::Cells,
     sums: Vec<[f32; 3]>,
+    /// What the pixels' centres see, while other samples of a grid are seen.
+    seen_at_centres: Vec<Seen>,
 }
 
 /// What a sample's ray from the eye hit.
@@ -118,7 +120,7 @@ impl Worker {
 
     /// Averages `side` x `side` passes, in row order. What the planes hold stays that of the pixels' centres.
     fn render_grid<S: Simd>(&mut self, simd: S, frame: &Frame<'_>, centre: &Pass, side: u32) {
-        let seen = std::mem::take(&mut self.seen);
+        std::mem::swap(&mut self.seen, &mut self.seen_at_centres);
         self.seen.resize(GRID * GRID, Seen::NOTHING);
         self.sums.clear();
         self.sums.resize(GRID * GRID, [0.0; 3]);
@@ -138,7 +140,7 @@ impl Worker {
         for sum in &mut self.sums {
             *sum = sum.map(|c| c * share);
         }
-        self.seen = seen;
+        std::mem::swap(&mut self.seen, &mut self.seen_at_centres);
     }
 
     /// Shades the hits in `rays`, then everything that follows from them, adding to the samples' colours.
