@@ -176,7 +176,9 @@ impl Geometry {
     /// those without extent are dropped and counted.
     pub fn build(parts: Vec<Part>) -> Self {
         let mut geometry = Self::default();
-        let packed = geometry.pack(parts);
+        let packed = geometry.pack(&parts);
+        // The largest array here is not needed while the tree is built.
+        drop(parts);
         let unplaced = Slot { kind: PrimitiveKind::Plane, block: u32::MAX, place: 0 };
         geometry.slots = vec![unplaced; packed.len()];
 
@@ -196,8 +198,8 @@ impl Geometry {
         geometry
     }
 
-    /// Packs parts and keeps what else is to be known of them; frees them on the way.
-    fn pack(&mut self, parts: Vec<Part>) -> Vec<Packed> {
+    /// Packs parts and keeps what else is to be known of them.
+    fn pack(&mut self, parts: &[Part]) -> Vec<Packed> {
         let packed: Vec<Option<Packed>> = parts.par_iter().map(|part| Packed::new(&part.shape)).collect();
         let kept = packed.iter().flatten().count();
         self.dropped = parts.len() - kept;
@@ -210,7 +212,6 @@ impl Geometry {
             self.ids.push(part.id);
         }
         self.attributes.shrink_to_fit();
-        // In place: an `Option` of it is no larger.
         packed.into_iter().flatten().collect()
     }
 
