@@ -25,9 +25,10 @@ pub use shape::{Part, PrimitiveId, Shape, VertexAttributes};
 pub use traverse::{Search, SphereTerms, Stack};
 pub use visitor::{AnyHit, ClosestHit, NextCrossing, Opaque, Visitor};
 
-use bvh::{Bvh, Leaf};
+use bvh::{Bvh, LeafMembers};
 use glam::Vec3;
 use primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
+use rayon::prelude::*;
 
 /// Where a primitive lies: its type, its block and its place there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,23 +107,28 @@ macro_rules! define_geometry {
                     + self.bvh.as_ref().map_or(0, Bvh::bytes)
             }
 
-            /// Puts the packed primitives of a leaf into a new block of their type.
-            fn push_block(&mut self, kind: PrimitiveKind, members: &[PrimitiveIndex], packed: &[Packed]) -> Leaf {
-                match kind {
-                    $(PrimitiveKind::$kernel => {
+            /// Fills blocks and slots with what the leaves hold.
+            fn fill_blocks(&mut self, leaves: &[LeafMembers], packed: &[Packed]) {
+                $(
+                    let own = leaves.par_iter().filter(|leaf| leaf.kind == PrimitiveKind::$kernel);
+                    let own: Vec<&LeafMembers> = own.collect();
+                    let fill = |leaf: &&LeafMembers| {
                         let mut block = Block::<$fields>::EMPTY;
-                        let number = self.$blocks.len() as u32;
-                        for &member in members {
+                        for &member in leaf.members() {
                             let Packed::$kernel(fields) = &packed[member as usize] else {
                                 unreachable!("a leaf holds one type")
                             };
-                            self.slots[member as usize] = Slot { kind, block: number, place: block.len as u8 };
                             block.push(*fields, member);
                         }
-                        self.$blocks.push(block);
-                        Leaf { kind, block: number }
-                    })+
-                }
+                        block
+                    };
+                    self.$blocks = own.par_iter().map(fill).collect();
+                    for (leaf, block) in own.iter().zip(0..) {
+                        for (&member, place) in leaf.members().iter().zip(0..) {
+                            self.slots[member as usize] = Slot { kind: leaf.kind, block, place };
+                        }
+                    }
+                )+
             }
         }
 
@@ -182,41 +188,43 @@ impl Geometry {
     /// those without extent are dropped and counted.
     pub fn build(parts: Vec<Part>) -> Self {
         let mut geometry = Self::default();
-        let mut packed = Vec::with_capacity(parts.len());
-        for part in parts {
-            let Some(fields) = Packed::new(&part.shape) else {
-                geometry.dropped += 1;
-                continue;
-            };
-            if let (Some(attributes), Shape::Triangle { vertices }) = (part.attributes, part.shape) {
-                let stored = attributes.reordered(Triangle::stored_order(vertices));
-                geometry.attributes.push((packed.len() as u32, stored));
-            }
-            packed.push(fields);
-            geometry.ids.push(part.id);
-        }
+        let packed = geometry.pack(&parts);
+        // The largest array here is not needed while the tree is built.
+        drop(parts);
         let unplaced = Slot { kind: PrimitiveKind::Plane, block: u32::MAX, place: 0 };
         geometry.slots = vec![unplaced; packed.len()];
 
         let (planes, finite): (Vec<u32>, Vec<u32>) =
             (0..packed.len() as u32).partition(|&i| packed[i as usize].kind() == PrimitiveKind::Plane);
-        for members in planes.chunks(BLOCK) {
-            geometry.push_block(PrimitiveKind::Plane, members, &packed);
-        }
-        let boxes: Vec<Aabb> = finite.iter().map(|&i| packed[i as usize].bounds()).collect();
+        let boxes: Vec<Aabb> = finite.par_iter().map(|&i| packed[i as usize].bounds()).collect();
+        let kinds: Vec<PrimitiveKind> = finite.par_iter().map(|&i| packed[i as usize].kind()).collect();
         geometry.bounds = boxes.iter().fold(Aabb::EMPTY, |a, &b| a.union(b));
-        let kinds: Vec<PrimitiveKind> = finite.iter().map(|&i| packed[i as usize].kind()).collect();
-        let mut members = Vec::with_capacity(BLOCK);
-        let bvh = bvh::build(&boxes, &kinds, &mut |kind, local| {
-            members.clear();
-            members.extend(local.iter().map(|&l| finite[l as usize]));
-            members.sort_unstable();
-            geometry.push_block(kind, &members, &packed)
-        });
+        let (bvh, mut leaves) = bvh::build(&boxes, &kinds).unzip();
+        let leaves = leaves.get_or_insert_default();
+        for leaf in &mut *leaves {
+            leaf.rename(&finite);
+        }
+        leaves.extend(planes.chunks(BLOCK).map(|members| LeafMembers::new(PrimitiveKind::Plane, members)));
+        geometry.fill_blocks(leaves, &packed);
         geometry.bvh = bvh.filter(|bvh| bvh.leaves >= MIN_BLOCKS_FOR_TREE);
-        geometry.spheres.shrink_to_fit();
-        geometry.triangles.shrink_to_fit();
         geometry
+    }
+
+    /// Packs parts and keeps what else is to be known of them.
+    fn pack(&mut self, parts: &[Part]) -> Vec<Packed> {
+        let packed: Vec<Option<Packed>> = parts.par_iter().map(|part| Packed::new(&part.shape)).collect();
+        let kept = packed.iter().flatten().count();
+        self.dropped = parts.len() - kept;
+        self.ids.reserve_exact(kept);
+        for (part, _) in parts.iter().zip(&packed).filter(|(_, packed)| packed.is_some()) {
+            if let (Some(attributes), Shape::Triangle { vertices }) = (part.attributes, part.shape) {
+                let stored = attributes.reordered(Triangle::stored_order(vertices));
+                self.attributes.push((self.ids.len() as u32, stored));
+            }
+            self.ids.push(part.id);
+        }
+        self.attributes.shrink_to_fit();
+        packed.into_iter().flatten().collect()
     }
 
     /// How many primitives there are.

@@ -51,7 +51,6 @@ pub struct Scratch {
     pool: Option<Pool>,
     tables: Tables,
     sphere_terms: Vec<Block<4>>,
-    lights: Vec<Light>,
     around_eye: Vec<u32>,
 }
 
@@ -59,20 +58,19 @@ pub struct Scratch {
 #[derive(Debug)]
 struct Pool {
     asked: i32,
-    threads: rayon::ThreadPool,
+    /// `None` where the calling thread does it all.
+    threads: Option<rayon::ThreadPool>,
     workers: Vec<Mutex<Worker>>,
 }
 
 impl Pool {
     fn new(asked: i32) -> Self {
-        let threads = thread_count(asked);
-        let built = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .thread_name(|i| format!("tracer {i}"))
-            .build()
-            .or_else(|_| rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build());
-        let threads = built.expect("a pool of the current thread needs no new thread");
-        let workers = (0..threads.current_num_threads()).map(|_| Mutex::default()).collect();
+        let count = thread_count(asked);
+        let builder = rayon::ThreadPoolBuilder::new().num_threads(count).thread_name(|i| format!("tracer {i}"));
+        // Where the system gives no threads, the one that asks is left.
+        let threads = if count > 1 { builder.build().ok() } else { None };
+        let workers = threads.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
+        let workers = (0..workers).map(|_| Mutex::default()).collect();
         Self { asked, threads, workers }
     }
 }
@@ -96,7 +94,6 @@ impl Scratch {
             pool: None,
             tables: Tables::default(),
             sphere_terms: Vec::new(),
-            lights: Vec::new(),
             around_eye: Vec::new(),
         }
     }
@@ -139,6 +136,8 @@ pub(super) struct Frame<'a> {
 ///
 /// The picture depends on scene, camera, settings and the film's size alone: not on what was rendered before, nor on
 /// the number of threads. A SIMD level that the machine lacks falls back to the best it has.
+///
+/// Once `scratch` and `film` have seen such frames, none allocates; only rayon's queue takes a block every 63 of them.
 pub fn render_frame(
     scene: &Scene,
     camera: &Camera,
@@ -148,7 +147,7 @@ pub fn render_frame(
 ) -> FrameStats {
     let start = Instant::now();
     let token = SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best);
-    let Scratch { cancel, beam_margin, pool, tables, sphere_terms, lights, around_eye } = scratch;
+    let Scratch { cancel, beam_margin, pool, tables, sphere_terms, around_eye } = scratch;
     if tables.generation != Some(scene.generation) {
         *tables = Tables::new(scene);
     }
@@ -158,11 +157,8 @@ pub fn render_frame(
     let Some(Pool { threads, workers, .. }) = pool else { unreachable!("the pool was just made") };
 
     let plan = Plan::with_tables(scene, settings, tables);
-    lights.clone_from(&scene.lights);
-    if scene.headlight {
-        let kind = LightKind::Point { position: camera.eye };
-        lights.push(Light { name: None, kind, color: Vec3::ONE, falloff: Falloff::None });
-    }
+    let at_eye = LightKind::Point { position: camera.eye };
+    let headlight = [Light { name: None, kind: at_eye, color: Vec3::ONE, falloff: Falloff::None }];
     around_eye.clear();
     if plan.media {
         super::inside::bodies_around(scene, tables, camera.eye, around_eye);
@@ -183,7 +179,7 @@ pub fn render_frame(
         projection: Projection::new(view.eye, axes, false, scene.geometry.reach(), *beam_margin),
         half_picture: [view.right.length(), view.up.length()],
         beam_margin: *beam_margin,
-        lights,
+        lights: if scene.headlight { &headlight } else { &scene.lights },
         ambient: scene.render.ambient,
         sphere_terms: match plan.sphere_cache {
             SphereCache::Off => SphereTerms::None,
@@ -206,7 +202,10 @@ pub fn render_frame(
         let mut worker = workers[index].lock().unwrap_or_else(PoisonError::into_inner);
         dispatch!(token, simd => tile::render(simd, &frame, film_tile, &mut worker));
     };
-    threads.install(|| film.tiles.par_iter_mut().with_max_len(1).for_each(work));
+    match threads {
+        Some(threads) => threads.install(|| film.tiles.par_iter_mut().with_max_len(1).for_each(work)),
+        None => film.tiles.iter_mut().for_each(work),
+    }
     film.assemble();
 
     let mut stats = FrameStats { completed: !cancel.is_cancelled(), ..FrameStats::default() };

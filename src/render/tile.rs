@@ -38,6 +38,8 @@ pub struct Worker {
     /// Empty queues, for their memory.
     spare: Vec<RayQueue>,
     sums: Colors,
+    /// What the pixels' centres see, while other samples of a grid are seen.
+    seen_at_centres: Vec<Seen>,
 }
 
 /// Rays that wait until all that follows from earlier ones is done.
@@ -128,7 +130,7 @@ impl Worker {
 
     /// Averages `side` x `side` passes, in row order. What the planes hold stays that of the pixels' centres.
     fn render_grid<S: Simd>(&mut self, simd: S, frame: &Frame<'_>, centre: &Pass, side: u32) {
-        let seen = std::mem::take(&mut self.seen);
+        std::mem::swap(&mut self.seen, &mut self.seen_at_centres);
         self.seen.resize(SAMPLES, Seen::NOTHING);
         self.sums.clear();
         let pixels_before = self.stats.pixels;
@@ -142,7 +144,7 @@ impl Worker {
             }
         }
         self.sums.scale(1.0 / (side * side) as f32);
-        self.seen = seen;
+        std::mem::swap(&mut self.seen, &mut self.seen_at_centres);
     }
 
     /// Shades the hits in `rays`, then everything that follows from them, adding to the samples' colours.
