@@ -9,8 +9,8 @@ use obvhs::bvh2::Bvh2;
 use rayon::prelude::*;
 
 /// Cost of testing one primitive, in units of testing one box. Lower fills blocks better: less memory (at 1.5, 244 bytes
-/// a triangle; at 0.7, 129; at 0.5, 101) and cheaper mirrors, but slivers are then tested by packets that pass them by.
-const PRIMITIVE_COST: f32 = 0.7;
+/// a triangle; at 0.6, 115; at 0.5, 101) and cheaper mirrors, but slivers are then tested by packets that pass them by.
+const PRIMITIVE_COST: f32 = 0.6;
 /// Cost of visiting a leaf, whatever it holds.
 const LEAF_COST: f32 = 1.0;
 /// Cost of one level of the binary tree: about a third of a wide node's eight boxes.

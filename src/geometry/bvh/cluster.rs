@@ -11,9 +11,9 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
 
-/// How far along the curve a box looks for its best partner. 24 is no better, 6 is 3 % worse.
+/// How far along the curve a box looks for its best partner: what `obvhs` takes for its medium build.
 const REACH: usize = 14;
-/// In the first rounds, where most boxes are, only the next neighbours are looked at: it costs nothing in quality.
+/// In the first rounds, where most boxes are, only the next neighbours are looked at, as `obvhs` does.
 const NEAR_ROUNDS: usize = 3;
 /// A round that merges fewer than one in so many boxes has stalled.
 const STALLED: usize = 16;
