@@ -83,7 +83,8 @@ impl<const M: usize> List<M> {
             let missed = K::misses(&outlines, beam) | is_behind(K::nearest(&outlines), beam, cover);
             let present = (1 << (self.len - at).min(S::f32s::LEN)) - 1;
             let kept = !missed.to_bitmask() & present;
-            let mut covering = K::covers(&outlines, beam).to_bitmask() & kept;
+            // Where rays only ask whether anything is in their way, nothing hides anything.
+            let mut covering = if beam.blocking.is_none() { K::covers(&outlines, beam).to_bitmask() & kept } else { 0 };
             while covering != 0 {
                 let (nearest, farthest) =
                     bounds_of::<K, S, S::f32s, N, M>(&outlines, covering.trailing_zeros() as usize, beam);
@@ -253,6 +254,11 @@ macro_rules! define_candidates {
                     self.$blocks.iter().map(#[inline(always)] |&place| place_of(place))
                 }
             )+
+
+            /// Whether there are none.
+            pub fn is_empty(&self) -> bool {
+                true $(&& self.$blocks.is_empty())+
+            }
 
             /// Replaces the places by those of all candidates.
             pub fn take_all(&mut self, candidates: &Candidates) {

@@ -80,16 +80,16 @@ impl ShadowQueue {
 fn resolve_light<S: Simd>(simd: S, frame: &Frame<'_>, light: usize, queue: &mut ShadowQueue, worker: &mut Worker) {
     let search = Search::new(&frame.scene.geometry, frame.plan.tree);
     queue.pad();
-    if frame.settings.visibility != Visibility::Certified {
-        let all = 0..queue.len();
-        return resolve_rays(simd, frame, light, queue, all, &Occluders { search, listed: None }, worker);
-    }
     let mut lists = worker.shadow_scratch.lists.take().unwrap_or_default();
-    for run in queue.runs.windows(2) {
-        let range = run[0] as usize..run[1] as usize;
-        if !range.is_empty() {
-            resolve_run(simd, frame, light, queue, range, &search, &mut lists, worker);
+    if frame.settings.visibility == Visibility::Certified {
+        for run in queue.runs.windows(2) {
+            let range = run[0] as usize..run[1] as usize;
+            if !range.is_empty() {
+                resolve_run(simd, frame, light, queue, range, &search, &mut lists, worker);
+            }
         }
+    } else {
+        trace_rays(simd, frame, light, queue, 0..queue.len(), &search, None, &mut lists.places, worker);
     }
     worker.shadow_scratch.lists = Some(lists);
 }
@@ -118,27 +118,32 @@ fn resolve_run<S: Simd>(
         None => Verdict::Unknown,
     };
     worker.stats.stages_ms.certificate += milliseconds_since(start);
-    match (verdict, &judge) {
-        (Verdict::Listed, Some(judge)) if lists.whole.len() > FEW => {
-            let parts = (range.len() / PART).max(1);
-            for part in 0..parts {
-                let at = |part: usize| range.start + range.len() * part / parts;
-                let own = at(part)..at(part + 1);
-                let verdict = judge.judge_part(simd, queue, own.clone(), &lists.whole, &mut lists.part);
-                lists.places.take_all(if verdict == Verdict::Unknown { &lists.whole } else { &lists.part });
-                let verdict = if verdict == Verdict::Unknown { Verdict::Listed } else { verdict };
-                resolve_judged(simd, frame, light, queue, own, verdict, search, &lists.places, worker);
-            }
-        }
-        _ => {
-            lists.places.take_all(&lists.whole);
-            resolve_judged(simd, frame, light, queue, range, verdict, search, &lists.places, worker);
-        }
+    let Lists { whole, part, places } = lists;
+    let Some(judge) = judge.filter(|_| verdict == Verdict::Listed && whole.len() >= FEW) else {
+        let suspects = Suspects { candidates: whole, judge: None };
+        return carry_out(simd, frame, light, queue, range, verdict, search, suspects, places, worker);
+    };
+    let parts = (range.len() / PART).max(1);
+    let at = |part: usize| range.start + range.len() * part / parts;
+    for number in 0..parts {
+        let own = at(number)..at(number + 1);
+        let start = Instant::now();
+        let verdict = judge.judge_part(simd, queue, own.clone(), whole, part);
+        worker.stats.stages_ms.certificate += milliseconds_since(start);
+        let suspects = Suspects { candidates: part, judge: (part.len() >= FEW).then_some(&judge) };
+        carry_out(simd, frame, light, queue, own, verdict, search, suspects, places, worker);
     }
 }
 
-/// Does what a verdict asks for.
-fn resolve_judged<S: Simd>(
+/// What can be in the way of some rays, and who can tell that more closely.
+#[derive(Clone, Copy)]
+struct Suspects<'a> {
+    candidates: &'a Candidates,
+    judge: Option<&'a Judge<'a>>,
+}
+
+/// Does what a verdict on some rays asks for.
+fn carry_out<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     light: usize,
@@ -146,20 +151,15 @@ fn resolve_judged<S: Simd>(
     range: Range<usize>,
     verdict: Verdict,
     search: &Search<'_>,
-    places: &Places,
+    suspects: Suspects<'_>,
+    places: &mut Places,
     worker: &mut Worker,
 ) {
     match verdict {
         Verdict::Dark => {}
         Verdict::Lit => queue.add_gains(simd, range, &mut worker.color),
-        Verdict::Listed => {
-            let occluders = Occluders { search: *search, listed: Some(places) };
-            resolve_rays(simd, frame, light, queue, range, &occluders, worker);
-        }
-        Verdict::Unknown => {
-            let occluders = Occluders { search: *search, listed: None };
-            resolve_rays(simd, frame, light, queue, range, &occluders, worker);
-        }
+        Verdict::Listed => trace_rays(simd, frame, light, queue, range, search, Some(suspects), places, worker),
+        Verdict::Unknown => trace_rays(simd, frame, light, queue, range, search, None, places, worker),
     }
 }
 
@@ -185,24 +185,40 @@ impl Occluders<'_> {
 }
 
 /// Traces some of a light's shadow rays and adds what arrives.
-fn resolve_rays<S: Simd>(
+fn trace_rays<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     light: usize,
     queue: &ShadowQueue,
     range: Range<usize>,
-    occluders: &Occluders<'_>,
+    search: &Search<'_>,
+    suspects: Option<Suspects<'_>>,
+    places: &mut Places,
     worker: &mut Worker,
 ) {
     let Worker { shadow_scratch, stack, color, stats, .. } = worker;
     let last_blocker = &mut shadow_scratch.last_blocker[light];
+    if let Some(suspects) = suspects {
+        places.take_all(suspects.candidates);
+    }
     simd.vectorize(
         #[inline(always)]
         || {
             let opaque = frame.tables.opaque();
             for at in range.clone().step_by(S::f32s::LEN) {
-                let present = (1 << (range.end - at).min(S::f32s::LEN)) - 1;
                 let lanes = at..at + S::f32s::LEN;
+                let present = (1 << (range.end - at).min(S::f32s::LEN)) - 1;
+                let mut gain: V3<S::f32s> = queue.gain.load(simd, at);
+                if let Some(Suspects { candidates, judge: Some(judge) }) = suspects {
+                    if !judge.select(simd, queue, at..lanes.end.min(range.end), candidates, places) {
+                        places.take_all(candidates);
+                    }
+                    if places.is_empty() {
+                        color.add(simd, &queue.sample[lanes], present, gain);
+                        continue;
+                    }
+                }
+                let occluders = Occluders { search: *search, listed: suspects.is_some().then_some(&*places) };
                 let rays = Rays::new(queue.origin.load(simd, at), queue.direction.load(simd, at));
                 let sources = S::u32s::from_slice(simd, &queue.source[lanes.clone()]);
                 // Lanes beyond the range go nowhere.
@@ -210,7 +226,7 @@ fn resolve_rays<S: Simd>(
                     .select(S::f32s::from_slice(simd, &queue.distance[lanes.clone()]), S::f32s::splat(simd, 0.0));
                 let mut visitor = AnyHit::new(simd, distance, sources, opaque);
                 if frame.settings.shadow_cache && *last_blocker != NO_PRIMITIVE {
-                    occluders.search.test_one(simd, *last_blocker, &rays, &mut visitor);
+                    search.test_one(simd, *last_blocker, &rays, &mut visitor);
                     count_cache(&mut stats.shadow_cache, present, visitor.blocked.to_bitmask());
                 }
                 if !visitor.is_finished() {
@@ -219,13 +235,12 @@ fn resolve_rays<S: Simd>(
                 if visitor.blocker != NO_PRIMITIVE {
                     *last_blocker = visitor.blocker;
                 }
-                let mut gain: V3<S::f32s> = queue.gain.load(simd, at);
                 if let Opaque::Listed(listed) = opaque
                     && visitor.passed_transparent
                     && visitor.blocked.any_false()
                 {
                     let open = visitor.blocked.select(S::f32s::splat(simd, 0.0), distance);
-                    gain = gain * crossing::transmittance(simd, frame, occluders, &rays, sources, listed, open, stack);
+                    gain = gain * crossing::transmittance(simd, frame, &occluders, &rays, sources, listed, open, stack);
                 }
                 let open = !visitor.blocked.to_bitmask() & present;
                 color.add(simd, &queue.sample[lanes], open, gain);
