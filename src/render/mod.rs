@@ -1,10 +1,12 @@
 //! One frame from scene, camera and settings. No window, no file.
 //!
 //! `frame` makes the plan and hands tiles to workers; `tile` runs one tile: `visibility` finds what each sample sees,
-//! then level by level `shade` adds local light and queues rays, `shadow` and `trace` trace them, `secondary` follows
-//! mirrors and glass; `resolve` encodes the result.
+//! then queue by queue `shade` adds local light and queues rays, `shadow` and `trace` trace them, `secondary` follows
+//! mirrors and glass; `resolve` encodes the result. All of it runs in lanes, a packet of rays at a time.
 
+mod absorption;
 mod brdf;
+mod direct;
 pub mod film;
 mod frame;
 mod gather;

@@ -287,6 +287,16 @@ pub struct ShadowQueue {
     len: usize,
 }
 
+/// One shadow ray a lane, as [`ShadowQueue`] keeps them.
+pub struct ShadowPacket<S: Simd> {
+    pub origin: V3<S::f32s>,
+    pub direction: V3<S::f32s>,
+    pub gain: V3<S::f32s>,
+    pub distance: S::f32s,
+    pub sample: S::u32s,
+    pub source: S::u32s,
+}
+
 impl ShadowQueue {
     /// How many rays there are.
     pub fn len(&self) -> usize {
@@ -319,23 +329,14 @@ impl ShadowQueue {
 
     /// Appends the masked lanes, in order; there must be room for all lanes.
     #[inline(always)]
-    pub fn push_lanes<S: Simd>(
-        &mut self,
-        mask: Mask<S>,
-        origin: V3<S::f32s>,
-        direction: V3<S::f32s>,
-        distance: S::f32s,
-        gain: V3<S::f32s>,
-        sample: S::u32s,
-        source: S::u32s,
-    ) {
+    pub fn push_lanes<S: Simd>(&mut self, mask: Mask<S>, rays: &ShadowPacket<S>) {
         let at = self.len;
-        self.origin.put::<S>(at, mask, origin);
-        self.direction.put::<S>(at, mask, direction);
-        self.gain.put::<S>(at, mask, gain);
-        put::<S>(&mut self.distance, at, mask, distance);
-        put_numbers::<S>(&mut self.sample, at, mask, sample);
-        put_numbers::<S>(&mut self.source, at, mask, source);
+        self.origin.put::<S>(at, mask, rays.origin);
+        self.direction.put::<S>(at, mask, rays.direction);
+        self.gain.put::<S>(at, mask, rays.gain);
+        put::<S>(&mut self.distance, at, mask, rays.distance);
+        put_numbers::<S>(&mut self.sample, at, mask, rays.sample);
+        put_numbers::<S>(&mut self.source, at, mask, rays.source);
         self.len += count::<S>(mask);
     }
 

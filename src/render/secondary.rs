@@ -32,7 +32,7 @@ pub(super) struct Incident<S: Simd> {
     /// Surface colour.
     pub color: V3<S::f32s>,
     pub weight: V3<S::f32s>,
-    pub samples: S::u32s,
+    pub sample: S::u32s,
     pub media: S::u32s,
 }
 
@@ -90,7 +90,7 @@ pub(super) fn follow<S: Simd>(
         if heavy.any_true() {
             let direction = hold_unit::<S>(incident.direction + incident.normal.scale(cosine * 2.0));
             let start = leave::start::<S>(incident.position, incident.facing, incident.margin, direction);
-            mirrored.push_lanes::<S>(heavy, start, direction, weight, incident.samples, incident.media);
+            mirrored.push_lanes::<S>(heavy, start, direction, weight, incident.sample, incident.media);
             counts.reflection += u64::from(heavy.to_bitmask().count_ones());
         }
     }
@@ -105,7 +105,7 @@ pub(super) fn follow<S: Simd>(
                 incident.media
             };
             let start = leave::start::<S>(incident.position, -incident.facing, incident.margin, split.inward);
-            refracted.push_lanes::<S>(heavy, start, split.inward, weight, incident.samples, inside);
+            refracted.push_lanes::<S>(heavy, start, split.inward, weight, incident.sample, inside);
             counts.refraction += u64::from(heavy.to_bitmask().count_ones());
         }
     }

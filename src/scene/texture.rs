@@ -90,7 +90,7 @@ impl ImageTexture {
 #[inline(always)]
 fn neighbours<S: Simd>(simd: S, t: S::f32s, size: u32) -> (S::u32s, S::u32s, S::f32s) {
     let zero = S::f32s::splat(simd, 0.0);
-    let finite = (t - t).simd_eq(zero);
+    let finite = t.abs().simd_lt(S::f32s::splat(simd, f32::INFINITY));
     let t = finite.select(t, zero);
     let texels = size as f32;
     let position = (t - t.floor()) * texels - 0.5;
