@@ -39,9 +39,20 @@ impl<const M: usize> List<M> {
         self.len == 0
     }
 
-    /// Where they lie.
-    fn places(&self) -> &[u32] {
-        &self.places[..self.len]
+    /// Block and place within it of one.
+    #[inline(always)]
+    pub(super) fn place(&self, at: usize) -> (usize, usize) {
+        place_of(self.places[at])
+    }
+
+    /// The outline of one, in every lane.
+    #[inline(always)]
+    pub(super) fn outline<S: Simd, F: Lanes<S>>(&self, simd: S, at: usize) -> [F; M] {
+        let mut outline = [F::splat(simd, 0.0); M];
+        for (lanes, column) in outline.iter_mut().zip(self.outlines.iter()) {
+            *lanes = F::splat(simd, column[at]);
+        }
+        outline
     }
 
     /// Empties the list.
@@ -66,36 +77,6 @@ impl<const M: usize> List<M> {
             self.places[self.len] = places[lanes.trailing_zeros() as usize];
             self.len += 1;
             lanes &= lanes - 1;
-        }
-    }
-
-    /// Appends where those candidates lie that the beam can meet, moving the cover up as it goes.
-    #[inline(always)]
-    fn select<K: Outline<N, M>, S: Simd, const N: usize>(
-        &self,
-        simd: S,
-        beam: &Beam<'_>,
-        cover: &mut Cover,
-        places: &mut Vec<u32>,
-    ) {
-        for at in (0..self.len).step_by(S::f32s::LEN) {
-            let outlines: [S::f32s; M] = self.load(simd, at);
-            let missed = K::misses(&outlines, beam) | is_behind(K::nearest(&outlines), beam, cover);
-            let present = (1 << (self.len - at).min(S::f32s::LEN)) - 1;
-            let kept = !missed.to_bitmask() & present;
-            // Where rays only ask whether anything is in their way, nothing hides anything.
-            let mut covering = if beam.blocking.is_none() { K::covers(&outlines, beam).to_bitmask() & kept } else { 0 };
-            while covering != 0 {
-                let (nearest, farthest) =
-                    bounds_of::<K, S, S::f32s, N, M>(&outlines, covering.trailing_zeros() as usize, beam);
-                cover.move_up(nearest, farthest, beam);
-                covering &= covering - 1;
-            }
-            let mut lanes = kept;
-            while lanes != 0 {
-                places.push(self.places[at + lanes.trailing_zeros() as usize]);
-                lanes &= lanes - 1;
-            }
         }
     }
 
@@ -237,45 +218,6 @@ macro_rules! define_candidates {
                         })+
                     },
                 );
-            }
-        }
-
-        /// Where candidates lie: block and place within it, type by type.
-        #[derive(Clone, Debug, Default)]
-        pub struct Places {
-            $($blocks: Vec<u32>,)+
-        }
-
-        impl Places {
-            $(
-                #[doc = concat!("Places of type ", stringify!($kernel), ".")]
-                #[inline(always)]
-                pub fn $blocks(&self) -> impl Iterator<Item = (usize, usize)> {
-                    self.$blocks.iter().map(#[inline(always)] |&place| place_of(place))
-                }
-            )+
-
-            /// Whether there are none.
-            pub fn is_empty(&self) -> bool {
-                true $(&& self.$blocks.is_empty())+
-            }
-
-            /// Replaces the places by those of all candidates.
-            pub fn take_all(&mut self, candidates: &Candidates) {
-                $(
-                    self.$blocks.clear();
-                    self.$blocks.extend_from_slice(candidates.$blocks.places());
-                )+
-            }
-
-            /// Replaces the places by those of the candidates that a beam within theirs can meet.
-            #[inline(always)]
-            pub fn select<S: Simd>(&mut self, simd: S, candidates: &Candidates, beam: &Beam<'_>) {
-                let mut cover = candidates.cover;
-                $(
-                    self.$blocks.clear();
-                    candidates.$blocks.select::<$kernel, S, $fields>(simd, beam, &mut cover, &mut self.$blocks);
-                )+
             }
         }
     };

@@ -1,7 +1,7 @@
 //! What a beam needs to know of each type of primitive: an outline in its view, larger than the kernel's by the
 //! margins where it is to be missed, smaller where it is to cover.
 
-use super::projection::{Beam, Cover};
+use super::projection::{Beam, Cover, Points};
 use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
@@ -17,6 +17,15 @@ pub trait Outline<const N: usize, const M: usize>: Kernel<N> {
 
     /// Where every ray of the beam hits.
     fn covers<S: Simd, F: Lanes<S>>(outline: &[F; M], beam: &Beam<'_>) -> F::Mask;
+
+    /// Whether [`is_passed_by`](Self::is_passed_by) tells something, and more quickly than the kernel.
+    const LOOK_FIRST: bool = false;
+
+    /// Where rays of the beam surely do not hit within `limit`.
+    #[inline(always)]
+    fn is_passed_by<S: Simd, F: Lanes<S>>(_outline: &[F; M], rays: &Points<F>, _limit: F) -> F::Mask {
+        F::Mask::splat(rays.x.token(), false)
+    }
 
     /// An upper bound of the nearness of hits, as a product with q.
     fn nearest<S: Simd, F: Lanes<S>>(outline: &[F; M]) -> [F; 3];
@@ -190,6 +199,16 @@ impl Outline<10, TRIANGLE> for Triangle {
     #[inline(always)]
     fn covers<S: Simd, F: Lanes<S>>(outline: &[F; TRIANGLE], beam: &Beam<'_>) -> F::Mask {
         inside_sides(&outline[10..], beam)
+    }
+
+    const LOOK_FIRST: bool = true;
+
+    #[inline(always)]
+    fn is_passed_by<S: Simd, F: Lanes<S>>(outline: &[F; TRIANGLE], rays: &Points<F>, limit: F) -> F::Mask {
+        // Twice the margin: a ray's q is itself off by less than one.
+        let [_, _, _, _, nx, ny, nz, _, _, _, px, py, pz, qx, qy, qz, rx, ry, rz] = *outline;
+        let least = rays.value(px, py, pz).min(rays.value(qx, qy, qz)).min(rays.value(rx, ry, rz));
+        least.simd_lt(-2.0) | rays.is_too_deep([nx, ny, nz], limit)
     }
 
     #[inline(always)]

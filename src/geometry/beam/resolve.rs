@@ -1,7 +1,9 @@
 //! The candidates of a beam, tested ray by ray.
 
-use super::list::Places;
-use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Triangle, for_each_primitive};
+use super::list::Candidates;
+use super::outline::Outline;
+use super::projection::Points;
+use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use crate::geometry::traverse::test_place;
 use crate::geometry::{Rays, Search, Visitor};
 use fearless_simd::Simd;
@@ -10,16 +12,25 @@ use fearless_simd::prelude::*;
 macro_rules! define_resolve {
     ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
         impl Search<'_> {
-            /// Shows `visitor` every hit of the primitives at the given places that can matter to it.
+            /// Shows `visitor` every hit of the candidates that can matter to it. `points` are the rays as the candidates'
+            /// beam sees them.
             #[inline(always)]
             pub fn resolve<S: Simd, V: Visitor<S>>(
                 &self,
                 simd: S,
-                places: &Places,
+                candidates: &Candidates,
+                points: &Points<S::f32s>,
                 rays: &Rays<S::f32s>,
                 visitor: &mut V,
             ) {
-                $(for (block, place) in places.$blocks() {
+                $(for at in 0..candidates.$blocks.len() {
+                    if <$kernel as Outline<$fields, $outline>>::LOOK_FIRST {
+                        let outline: [S::f32s; $outline] = candidates.$blocks.outline(simd, at);
+                        if $kernel::is_passed_by(&outline, points, visitor.limit()).all_true() {
+                            continue;
+                        }
+                    }
+                    let (block, place) = candidates.$blocks.place(at);
                     let index = self.geometry.$blocks[block].indices[place];
                     if visitor.accepts(index) {
                         let t_min = visitor.t_min(index);

@@ -13,7 +13,7 @@ use fearless_simd::prelude::*;
 pub(super) fn transmittance<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
-    occluders: &Occluders<'_>,
+    occluders: &Occluders<'_, S>,
     rays: &Rays<S::f32s>,
     sources: S::u32s,
     opaque: &[bool],

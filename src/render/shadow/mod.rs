@@ -8,7 +8,7 @@ use super::queue::ShadowQueue;
 use super::samples::Colors;
 use super::stats::CacheCounts;
 use super::tile::{Worker, milliseconds_since};
-use crate::geometry::beam::{Candidates, Places};
+use crate::geometry::beam::{Candidates, Points};
 use crate::geometry::{AnyHit, NO_PRIMITIVE, Opaque, Packet, PrimitiveIndex, Rays, Search, Stack, Visitor};
 use crate::math::V3;
 use crate::settings::Visibility;
@@ -31,7 +31,6 @@ pub struct ShadowScratch {
 struct Lists {
     whole: Candidates,
     part: Candidates,
-    places: Places,
 }
 
 impl ShadowScratch {
@@ -89,7 +88,7 @@ fn resolve_light<S: Simd>(simd: S, frame: &Frame<'_>, light: usize, queue: &mut 
             }
         }
     } else {
-        trace_rays(simd, frame, light, queue, 0..queue.len(), &search, None, &mut lists.places, worker);
+        trace_rays(simd, frame, light, queue, 0..queue.len(), &search, None, worker);
     }
     worker.shadow_scratch.lists = Some(lists);
 }
@@ -118,11 +117,14 @@ fn resolve_run<S: Simd>(
         None => Verdict::Unknown,
     };
     worker.stats.stages_ms.certificate += milliseconds_since(start);
-    let Lists { whole, part, places } = lists;
-    let Some(judge) = judge.filter(|_| verdict == Verdict::Listed && whole.len() >= FEW) else {
-        let suspects = Suspects { candidates: whole, judge: None };
-        return carry_out(simd, frame, light, queue, range, verdict, search, suspects, places, worker);
+    let Lists { whole, part } = lists;
+    let Some(judge) = judge.filter(|_| verdict == Verdict::Listed) else {
+        return carry_out(simd, frame, light, queue, range, verdict, search, None, worker);
     };
+    if whole.len() < FEW {
+        let suspects = Some(Suspects { candidates: whole, judge: &judge });
+        return carry_out(simd, frame, light, queue, range, verdict, search, suspects, worker);
+    }
     let parts = (range.len() / PART).max(1);
     let at = |part: usize| range.start + range.len() * part / parts;
     for number in 0..parts {
@@ -130,16 +132,16 @@ fn resolve_run<S: Simd>(
         let start = Instant::now();
         let verdict = judge.judge_part(simd, queue, own.clone(), whole, part);
         worker.stats.stages_ms.certificate += milliseconds_since(start);
-        let suspects = Suspects { candidates: part, judge: (part.len() >= FEW).then_some(&judge) };
-        carry_out(simd, frame, light, queue, own, verdict, search, suspects, places, worker);
+        let suspects = Some(Suspects { candidates: part, judge: &judge });
+        carry_out(simd, frame, light, queue, own, verdict, search, suspects, worker);
     }
 }
 
-/// What can be in the way of some rays, and who can tell that more closely.
+/// What can be in the way of some rays, as a light sees it.
 #[derive(Clone, Copy)]
 struct Suspects<'a> {
     candidates: &'a Candidates,
-    judge: Option<&'a Judge<'a>>,
+    judge: &'a Judge<'a>,
 }
 
 /// Does what a verdict on some rays asks for.
@@ -151,31 +153,30 @@ fn carry_out<S: Simd>(
     range: Range<usize>,
     verdict: Verdict,
     search: &Search<'_>,
-    suspects: Suspects<'_>,
-    places: &mut Places,
+    suspects: Option<Suspects<'_>>,
     worker: &mut Worker,
 ) {
     match verdict {
         Verdict::Dark => {}
         Verdict::Lit => queue.add_gains(simd, range, &mut worker.color),
-        Verdict::Listed => trace_rays(simd, frame, light, queue, range, search, Some(suspects), places, worker),
-        Verdict::Unknown => trace_rays(simd, frame, light, queue, range, search, None, places, worker),
+        Verdict::Listed => trace_rays(simd, frame, light, queue, range, search, suspects, worker),
+        Verdict::Unknown => trace_rays(simd, frame, light, queue, range, search, None, worker),
     }
 }
 
-/// Where to look for what is in a ray's way.
-struct Occluders<'a> {
+/// Where to look for what is in the way of a packet of rays.
+struct Occluders<'a, S: Simd> {
     search: Search<'a>,
-    /// All that can be in the way, if that is known.
-    listed: Option<&'a Places>,
+    /// All that can be in the way, if that is known, and the rays as their light sees them.
+    listed: Option<(&'a Candidates, Points<S::f32s>)>,
 }
 
-impl Occluders<'_> {
+impl<S: Simd> Occluders<'_, S> {
     /// Shows `visitor` what is in the way.
     #[inline(always)]
-    fn visit<S: Simd, V: Visitor<S>>(&self, simd: S, rays: &Rays<S::f32s>, stack: &mut Stack, visitor: &mut V) {
-        match self.listed {
-            Some(places) => self.search.resolve(simd, places, rays, visitor),
+    fn visit<V: Visitor<S>>(&self, simd: S, rays: &Rays<S::f32s>, stack: &mut Stack, visitor: &mut V) {
+        match &self.listed {
+            Some((candidates, points)) => self.search.resolve(simd, candidates, points, rays, visitor),
             None => {
                 let packet = Packet::new(self.search.geometry, rays.origin, rays.direction);
                 self.search.traverse(simd, &packet, stack, visitor);
@@ -193,14 +194,10 @@ fn trace_rays<S: Simd>(
     range: Range<usize>,
     search: &Search<'_>,
     suspects: Option<Suspects<'_>>,
-    places: &mut Places,
     worker: &mut Worker,
 ) {
     let Worker { shadow_scratch, stack, color, stats, .. } = worker;
     let last_blocker = &mut shadow_scratch.last_blocker[light];
-    if let Some(suspects) = suspects {
-        places.take_all(suspects.candidates);
-    }
     simd.vectorize(
         #[inline(always)]
         || {
@@ -209,17 +206,14 @@ fn trace_rays<S: Simd>(
                 let lanes = at..at + S::f32s::LEN;
                 let present = (1 << (range.end - at).min(S::f32s::LEN)) - 1;
                 let mut gain: V3<S::f32s> = queue.gain.load(simd, at);
-                if let Some(Suspects { candidates, judge: Some(judge) }) = suspects {
-                    if !judge.select(simd, queue, at..lanes.end.min(range.end), candidates, places) {
-                        places.take_all(candidates);
-                    }
-                    if places.is_empty() {
-                        color.add(simd, &queue.sample[lanes], present, gain);
-                        continue;
-                    }
-                }
-                let occluders = Occluders { search: *search, listed: suspects.is_some().then_some(&*places) };
                 let rays = Rays::new(queue.origin.load(simd, at), queue.direction.load(simd, at));
+                let occluders = Occluders {
+                    search: *search,
+                    listed: match suspects {
+                        Some(Suspects { candidates, judge }) => Some((candidates, judge.points::<S>(rays.origin))),
+                        None => None,
+                    },
+                };
                 let sources = S::u32s::from_slice(simd, &queue.source[lanes.clone()]);
                 // Lanes beyond the range go nowhere.
                 let distance = <S::f32s as SimdBase<S>>::Mask::from_bitmask(simd, present)
