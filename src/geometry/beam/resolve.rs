@@ -6,6 +6,7 @@ use super::projection::Points;
 use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use crate::geometry::traverse::test_place;
 use crate::geometry::{Rays, Search, Visitor};
+use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -20,27 +21,54 @@ macro_rules! define_resolve {
                 simd: S,
                 candidates: &Candidates,
                 points: &Points<S::f32s>,
-                rays: &Rays<S::f32s>,
+                origin: V3<S::f32s>,
+                direction: V3<S::f32s>,
                 visitor: &mut V,
             ) {
-                $(for at in 0..candidates.$blocks.len() {
-                    if <$kernel as Outline<$fields, $outline>>::LOOK_FIRST {
-                        let outline: [S::f32s; $outline] = candidates.$blocks.outline(simd, at);
-                        if $kernel::is_passed_by(&outline, points, visitor.limit()).all_true() {
-                            continue;
+                $(if !candidates.$blocks.is_empty() {
+                    let rays = if $kernel::NEEDS_FRAME {
+                        Rays::new(origin, direction)
+                    } else {
+                        Rays::bare(origin, direction)
+                    };
+                    for at in 0..candidates.$blocks.len() {
+                        if <$kernel as Outline<$fields, $outline>>::LOOK_FIRST {
+                            let outline: [S::f32s; $outline] = candidates.$blocks.outline(simd, at);
+                            if $kernel::is_passed_by(&outline, points, visitor.limit()).all_true() {
+                                continue;
+                            }
                         }
-                    }
-                    let (block, place) = candidates.$blocks.place(at);
-                    let index = self.geometry.$blocks[block].indices[place];
-                    if visitor.accepts(index) {
-                        let t_min = visitor.t_min(index);
-                        let (mask, t) = test_place!($kernel, $blocks, self, simd, block, place, rays, t_min);
-                        visitor.hit(mask & t.simd_le(visitor.limit()), t, index);
-                        if visitor.is_finished() {
-                            return;
+                        let (block, place) = candidates.$blocks.place(at);
+                        let index = self.geometry.$blocks[block].indices[place];
+                        if visitor.accepts(index) {
+                            let t_min = visitor.t_min(index);
+                            let (mask, t) = test_place!($kernel, $blocks, self, simd, block, place, &rays, t_min);
+                            visitor.hit(mask & t.simd_le(visitor.limit()), t, index);
+                            if visitor.is_finished() {
+                                return;
+                            }
                         }
                     }
                 })+
+            }
+        }
+
+        impl Candidates {
+            /// Whether, by the look of their outlines, no ray can hit any candidate within `limit`.
+            #[inline(always)]
+            pub fn are_passed_by<S: Simd>(&self, simd: S, points: &Points<S::f32s>, limit: S::f32s) -> bool {
+                $(if !<$kernel as Outline<$fields, $outline>>::LOOK_FIRST && !self.$blocks.is_empty() {
+                    return false;
+                })+
+                $(if <$kernel as Outline<$fields, $outline>>::LOOK_FIRST {
+                    for at in 0..self.$blocks.len() {
+                        let outline: [S::f32s; $outline] = self.$blocks.outline(simd, at);
+                        if !$kernel::is_passed_by(&outline, points, limit).all_true() {
+                            return false;
+                        }
+                    }
+                })+
+                true
             }
         }
     };

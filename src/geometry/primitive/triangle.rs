@@ -103,6 +103,8 @@ impl Triangle {
 }
 
 impl Kernel<10> for Triangle {
+    const NEEDS_FRAME: bool = true;
+
     fn bounds(fields: &[f32; 10]) -> Aabb {
         Aabb::from_points([0, 3, 6].map(|i| Vec3::from_slice(&fields[i..i + 3])))
     }

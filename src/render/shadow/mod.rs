@@ -129,9 +129,7 @@ fn resolve_run<S: Simd>(
     let at = |part: usize| range.start + range.len() * part / parts;
     for number in 0..parts {
         let own = at(number)..at(number + 1);
-        let start = Instant::now();
         let verdict = judge.judge_part(simd, queue, own.clone(), whole, part);
-        worker.stats.stages_ms.certificate += milliseconds_since(start);
         let suspects = Some(Suspects { candidates: part, judge: &judge });
         carry_out(simd, frame, light, queue, own, verdict, search, suspects, worker);
     }
@@ -174,11 +172,18 @@ struct Occluders<'a, S: Simd> {
 impl<S: Simd> Occluders<'_, S> {
     /// Shows `visitor` what is in the way.
     #[inline(always)]
-    fn visit<V: Visitor<S>>(&self, simd: S, rays: &Rays<S::f32s>, stack: &mut Stack, visitor: &mut V) {
+    fn visit<V: Visitor<S>>(
+        &self,
+        simd: S,
+        origin: V3<S::f32s>,
+        direction: V3<S::f32s>,
+        stack: &mut Stack,
+        visitor: &mut V,
+    ) {
         match &self.listed {
-            Some((candidates, points)) => self.search.resolve(simd, candidates, points, rays, visitor),
+            Some((candidates, points)) => self.search.resolve(simd, candidates, points, origin, direction, visitor),
             None => {
-                let packet = Packet::new(self.search.geometry, rays.origin, rays.direction);
+                let packet = Packet::new(self.search.geometry, origin, direction);
                 self.search.traverse(simd, &packet, stack, visitor);
             }
         }
@@ -206,25 +211,27 @@ fn trace_rays<S: Simd>(
                 let lanes = at..at + S::f32s::LEN;
                 let present = (1 << (range.end - at).min(S::f32s::LEN)) - 1;
                 let mut gain: V3<S::f32s> = queue.gain.load(simd, at);
-                let rays = Rays::new(queue.origin.load(simd, at), queue.direction.load(simd, at));
-                let occluders = Occluders {
-                    search: *search,
-                    listed: match suspects {
-                        Some(Suspects { candidates, judge }) => Some((candidates, judge.points::<S>(rays.origin))),
-                        None => None,
-                    },
-                };
-                let sources = S::u32s::from_slice(simd, &queue.source[lanes.clone()]);
+                let (origin, direction) = (queue.origin.load(simd, at), queue.direction.load(simd, at));
                 // Lanes beyond the range go nowhere.
                 let distance = <S::f32s as SimdBase<S>>::Mask::from_bitmask(simd, present)
                     .select(S::f32s::from_slice(simd, &queue.distance[lanes.clone()]), S::f32s::splat(simd, 0.0));
+                let mut occluders = Occluders { search: *search, listed: None };
+                if let Some(Suspects { candidates, judge }) = suspects {
+                    let points = judge.points::<S>(origin);
+                    if candidates.are_passed_by(simd, &points, distance) {
+                        color.add(simd, &queue.sample[lanes], present, gain);
+                        continue;
+                    }
+                    occluders.listed = Some((candidates, points));
+                }
+                let sources = S::u32s::from_slice(simd, &queue.source[lanes.clone()]);
                 let mut visitor = AnyHit::new(simd, distance, sources, opaque);
-                if frame.settings.shadow_cache && *last_blocker != NO_PRIMITIVE {
-                    search.test_one(simd, *last_blocker, &rays, &mut visitor);
+                if frame.settings.shadow_cache && suspects.is_none() && *last_blocker != NO_PRIMITIVE {
+                    search.test_one(simd, *last_blocker, &Rays::new(origin, direction), &mut visitor);
                     count_cache(&mut stats.shadow_cache, present, visitor.blocked.to_bitmask());
                 }
                 if !visitor.is_finished() {
-                    occluders.visit(simd, &rays, stack, &mut visitor);
+                    occluders.visit(simd, origin, direction, stack, &mut visitor);
                 }
                 if visitor.blocker != NO_PRIMITIVE {
                     *last_blocker = visitor.blocker;
@@ -234,7 +241,17 @@ fn trace_rays<S: Simd>(
                     && visitor.blocked.any_false()
                 {
                     let open = visitor.blocked.select(S::f32s::splat(simd, 0.0), distance);
-                    gain = gain * crossing::transmittance(simd, frame, &occluders, &rays, sources, listed, open, stack);
+                    gain = gain
+                        * crossing::transmittance(
+                            simd,
+                            frame,
+                            &occluders,
+                            [origin, direction],
+                            sources,
+                            listed,
+                            open,
+                            stack,
+                        );
                 }
                 let open = !visitor.blocked.to_bitmask() & present;
                 color.add(simd, &queue.sample[lanes], open, gain);

@@ -8,7 +8,7 @@
 use super::order::Area;
 use super::{Pass, Worker, queue_tile, shade_queue};
 use crate::geometry::beam::{Beam, Candidates, Cover, Points};
-use crate::geometry::{ClosestHit, Rays, Search};
+use crate::geometry::{ClosestHit, Search};
 use crate::math::V3;
 use crate::render::frame::Frame;
 use crate::render::tile::milliseconds_since;
@@ -63,7 +63,10 @@ fn find_block<S: Simd>(
     let listed = search.collect(simd, &beam(frame, pass, area), nothing, &mut levels.block, &mut worker.stack);
     worker.stats.stages_ms.certificate += milliseconds_since(start);
     if listed && levels.block.len() <= 1 {
-        return resolve_area(simd, frame, &search, &levels.block, area, worker);
+        let start = Instant::now();
+        resolve_area(simd, frame, &search, &levels.block, area, worker);
+        worker.stats.stages_ms.visibility += milliseconds_since(start);
+        return;
     }
     for half in 4 * block..4 * block + 4 {
         if worker.order.halves[half].pixels() > 0 {
@@ -96,7 +99,10 @@ fn find_half<S: Simd>(
     };
     if complete && own.len() <= 1 {
         worker.stats.stages_ms.certificate += milliseconds_since(start);
-        return resolve_area(simd, frame, &search, own, area, worker);
+        let start = Instant::now();
+        resolve_area(simd, frame, &search, own, area, worker);
+        worker.stats.stages_ms.visibility += milliseconds_since(start);
+        return;
     }
     let mut known = [true; 4];
     for (at, (cell, known)) in (4 * half..).zip(cells.iter_mut().zip(&mut known)) {
@@ -112,20 +118,20 @@ fn find_half<S: Simd>(
         }
     }
     worker.stats.stages_ms.certificate += milliseconds_since(start);
+    let start = Instant::now();
     for (at, (cell, known)) in (4 * half..).zip(cells.iter().zip(known)) {
         let area = worker.order.cells[at];
         if area.pixels() == 0 {
             continue;
         }
         if !known {
-            let start = Instant::now();
             trace::primary_range(simd, frame, area.start..area.start + area.pixels(), worker);
             worker.stats.pixels.traced += area.pixels() as u64;
-            worker.stats.stages_ms.visibility += milliseconds_since(start);
         } else {
             resolve_area(simd, frame, &search, cell, area, worker);
         }
     }
+    worker.stats.stages_ms.visibility += milliseconds_since(start);
 }
 
 /// The beam of an area's rays.
@@ -149,7 +155,6 @@ fn resolve_area<S: Simd>(
     area: Area,
     worker: &mut Worker,
 ) {
-    let start = Instant::now();
     let Worker { rays, stats, .. } = worker;
     let pixels = area.pixels();
     if candidates.is_certain() {
@@ -163,13 +168,12 @@ fn resolve_area<S: Simd>(
             let eye = V3::splat(simd, frame.camera.eye);
             let (near, far) = (S::f32s::splat(simd, frame.camera.near), S::f32s::splat(simd, frame.camera.far));
             for at in (area.start..area.start + pixels).step_by(S::f32s::LEN) {
-                let packet = Rays::new(eye, rays.direction.load(simd, at));
-                let points = Points::along(&frame.projection, packet.direction);
+                let direction: V3<S::f32s> = rays.direction.load(simd, at);
+                let points = Points::along(&frame.projection, direction);
                 let mut visitor = ClosestHit::new(simd, near, far);
-                search.resolve(simd, candidates, &points, &packet, &mut visitor);
+                search.resolve(simd, candidates, &points, eye, direction, &mut visitor);
                 trace::store_hits(simd, &visitor, rays, at);
             }
         },
     );
-    stats.stages_ms.visibility += milliseconds_since(start);
 }
