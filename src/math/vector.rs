@@ -103,6 +103,17 @@ impl<F> V3<F> {
         let length = self.dot(self).sqrt();
         Self { x: self.x / length, y: self.y / length, z: self.z / length }
     }
+
+    /// [`normalize`](Self::normalize), but `other` where the squared length is 0 or too small to be accurate.
+    #[inline(always)]
+    pub fn normalize_or<S: Simd>(self, other: Self) -> Self
+    where
+        F: Lanes<S>,
+    {
+        let squared = self.dot(self);
+        let usable = squared.simd_ge(F::splat(squared.token(), f32::MIN_POSITIVE));
+        Self::select(usable, self.normalize(), other)
+    }
 }
 
 impl<F: Add<Output = F>> Add for V3<F> {

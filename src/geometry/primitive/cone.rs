@@ -81,9 +81,10 @@ impl Kernel<9> for Cone {
         let [half_height, radius, slope] = [fields[6], fields[7], fields[8]];
         let from_middle = direction.scale(t) - (middle - origin);
         let height = from_middle.dot(axis);
-        let outward = (from_middle - axis.scale(height)).normalize();
+        // At a tip, or where a needle is thinner than rounding errors, nothing is outward.
+        let outward = (from_middle - axis.scale(height)).normalize_or(V3::all(F::splat(t.token(), 0.0)));
         let position = middle + axis.scale(height) + outward.scale(radius + slope * height);
-        let normal = (outward - axis.scale(slope)).normalize();
+        let normal = (outward - axis.scale(slope)).normalize_or(-direction);
         SurfacePoint { position, normal, scale: largest(middle) + half_height + radius }
     }
 }

@@ -96,6 +96,26 @@ impl Triangle {
         (to_min.min(to_max), to_min.max(to_max))
     }
 
+    /// Unit normal by the winding of the corners. A needle that rounding leaves without one gets one that faces the ray.
+    #[inline(always)]
+    fn normal<S: Simd, F: Lanes<S>>([a, b, c]: [V3<F>; 3], winding: F, direction: V3<F>) -> V3<F> {
+        let (ab, ac) = (b - a, c - a);
+        let normal = ab.cross(ac).scale(winding);
+        let squared = normal.dot(normal);
+        let simd = squared.token();
+        let usable = squared.simd_ge(F::splat(simd, f32::MIN_POSITIVE)) & squared.simd_le(F::splat(simd, f32::MAX));
+        if usable.all_true() {
+            return normal.normalize();
+        }
+        // Squares of areas leave the range of f32 where edges are some 1e-10 or 1e9 long.
+        let unit = F::splat(simd, 1.0);
+        let (ab, ac) = (ab.scale(unit / largest(ab)), ac.scale(unit / largest(ac)));
+        let along = ac.normalize();
+        let across = (along.scale(along.dot(direction)) - direction).normalize_or(-direction);
+        let scaled = ab.cross(ac).scale(winding).normalize_or(across);
+        V3::select(usable, normal.normalize(), scaled)
+    }
+
     /// The stored corners of a triangle given by its fields.
     #[inline(always)]
     fn corners<F: Copy>(fields: &[F; 10]) -> [V3<F>; 3] {
@@ -143,8 +163,9 @@ impl Kernel<10> for Triangle {
 
     #[inline(always)]
     fn surface<S: Simd, F: Lanes<S>>(fields: &[F; 10], origin: V3<F>, direction: V3<F>, t: F) -> SurfacePoint<F> {
-        let [a, b, c] = Self::corners(fields);
-        let normal = (b - a).cross(c - a).scale(fields[9]).normalize();
+        let corners = Self::corners(fields);
+        let [a, b, c] = corners;
+        let normal = Self::normal(corners, fields[9], direction);
         let reached = origin + direction.scale(t);
         let position = reached - normal.scale(normal.dot(reached - a));
         let scale = largest(a).max(largest(b)).max(largest(c)).max(largest(position));
