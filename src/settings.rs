@@ -9,6 +9,8 @@ use std::fmt;
 /// How the thing seen by each pixel is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
+    /// What a block of pixels can see is proven once for all of them, and rays are tested against that alone.
+    Certified,
     /// One ray a pixel against the scene: the reference.
     Full,
     /// A coarse grid of rays; cells whose corners match are filled in (approximate).
@@ -133,7 +135,7 @@ impl Settings {
     /// The preset `exact`: the reference picture, every exact optimisation on.
     pub fn exact() -> Self {
         Self {
-            visibility: Visibility::Full,
+            visibility: Visibility::Certified,
             stride: 8,
             fill: Fill::Hit,
             match_threshold: 16.0 / 255.0,
@@ -319,8 +321,8 @@ macro_rules! switch_row {
 
 /// Every setting, in the order in which people meet them.
 pub const ROWS: &[Row] = &[
-    choice_row!("visibility", "how visible surfaces are found: full traces every pixel, subsample a grid whose matching cells are filled in",
-        visibility, ["full" => Visibility::Full, same; "subsample" => Visibility::Subsample, approximate]),
+    choice_row!("visibility", "how visible surfaces are found: certified proves for blocks of pixels what they can see, full traces every pixel, subsample a grid whose matching cells are filled in",
+        visibility, ["certified" => Visibility::Certified, same; "full" => Visibility::Full, same; "subsample" => Visibility::Subsample, approximate]),
     choice_row!("stride", "grid of subsample, in pixels",
         stride, ["8" => 8, approximate; "2" => 2, approximate; "4" => 4, approximate; "16" => 16, approximate]),
     choice_row!("fill", "how a matching cell is filled: hit re-uses the primitive and shades every pixel, color interpolates colours",

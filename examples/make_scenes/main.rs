@@ -41,5 +41,6 @@ fn main() -> anyhow::Result<()> {
         canvas::picture(edge, paint).save(&file).with_context(|| format!("cannot write {}", file.display()))?;
     }
     let file = folder.join("sphereflake.json");
-    std::fs::write(&file, sphereflake::scene()).with_context(|| format!("cannot write {}", file.display()))
+    std::fs::write(&file, sphereflake::scene(sphereflake::GENERATIONS))
+        .with_context(|| format!("cannot write {}", file.display()))
 }

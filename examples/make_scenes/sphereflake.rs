@@ -5,13 +5,13 @@ use glam::{DMat3, DVec3};
 use std::fmt::Write;
 
 /// Generations after the first sphere: 1 + 9 + 81 + 729 + 6561 = 7,381 spheres.
-const GENERATIONS: u32 = 4;
+pub const GENERATIONS: u32 = 4;
 
-/// The scene file, one sphere a line.
-pub fn scene() -> String {
+/// The scene file, one sphere a line; (9^(`generations` + 1) - 1) / 8 of them.
+pub fn scene(generations: u32) -> String {
     let mut text = String::from(HEAD);
     let mut spheres = Vec::new();
-    grow(&mut spheres, &children(), DVec3::ZERO, 0.5, DVec3::Z, GENERATIONS);
+    grow(&mut spheres, &children(), DVec3::ZERO, 0.5, DVec3::Z, generations);
     for (center, radius) in spheres {
         let [x, y, z] = center.to_array().map(short);
         // Writing to a String cannot fail.

@@ -107,7 +107,7 @@ fn hits(geometry: &Geometry, rays: &[Ray]) -> Vec<(f32, PrimitiveIndex)> {
 }
 
 macro_rules! define_surface_of {
-    ($($kernel:ident $fields:literal $blocks:ident,)+) => {
+    ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
         /// Position and normal of a geometry's only primitive at a hit.
         fn surface<S: Simd>(simd: S, geometry: &Geometry, ray: Ray, t: f32) -> (Vec3, Vec3) {
             let slot = geometry.slots[0];

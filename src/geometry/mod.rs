@@ -4,12 +4,14 @@
 //! is the one text that finds closest hits and occluders, with what to do about a hit left to a [`Visitor`].
 
 pub mod aabb;
+pub mod beam;
 pub mod block;
 pub mod bvh;
 #[cfg(test)]
 mod laws;
 pub mod packet;
 pub mod primitive;
+pub mod ray;
 pub mod shape;
 mod single;
 pub mod traverse;
@@ -18,12 +20,15 @@ pub mod visitor;
 pub use aabb::Aabb;
 pub use block::{BLOCK, Block, NO_PRIMITIVE, PrimitiveIndex};
 pub use packet::Packet;
+pub use ray::Rays;
 pub use shape::{Part, PrimitiveId, Shape, VertexAttributes};
 pub use traverse::{Search, SphereTerms, Stack};
 pub use visitor::{AnyHit, ClosestHit, NextCrossing, Opaque, Visitor};
 
-use bvh::{Bvh, Leaf};
+use bvh::{Bvh, LeafMembers};
+use glam::Vec3;
 use primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
+use rayon::prelude::*;
 
 /// Where a primitive lies: its type, its block and its place there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +42,7 @@ pub struct Slot {
 }
 
 macro_rules! define_geometry {
-    ($($kernel:ident $fields:literal $blocks:ident,)+) => {
+    ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
         /// The types of primitives.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum PrimitiveKind {
@@ -102,23 +107,28 @@ macro_rules! define_geometry {
                     + self.bvh.as_ref().map_or(0, Bvh::bytes)
             }
 
-            /// Puts the packed primitives of a leaf into a new block of their type.
-            fn push_block(&mut self, kind: PrimitiveKind, members: &[PrimitiveIndex], packed: &[Packed]) -> Leaf {
-                match kind {
-                    $(PrimitiveKind::$kernel => {
+            /// Fills blocks and slots with what the leaves hold.
+            fn fill_blocks(&mut self, leaves: &[LeafMembers], packed: &[Packed]) {
+                $(
+                    let own = leaves.par_iter().filter(|leaf| leaf.kind == PrimitiveKind::$kernel);
+                    let own: Vec<&LeafMembers> = own.collect();
+                    let fill = |leaf: &&LeafMembers| {
                         let mut block = Block::<$fields>::EMPTY;
-                        let number = self.$blocks.len() as u32;
-                        for &member in members {
+                        for &member in leaf.members() {
                             let Packed::$kernel(fields) = &packed[member as usize] else {
                                 unreachable!("a leaf holds one type")
                             };
-                            self.slots[member as usize] = Slot { kind, block: number, place: block.len as u8 };
                             block.push(*fields, member);
                         }
-                        self.$blocks.push(block);
-                        Leaf { kind, block: number }
-                    })+
-                }
+                        block
+                    };
+                    self.$blocks = own.par_iter().map(fill).collect();
+                    for (leaf, block) in own.iter().zip(0..) {
+                        for (&member, place) in leaf.members().iter().zip(0..) {
+                            self.slots[member as usize] = Slot { kind: leaf.kind, block, place };
+                        }
+                    }
+                )+
             }
         }
 
@@ -145,6 +155,14 @@ macro_rules! define_geometry {
 }
 for_each_primitive!(define_geometry);
 
+impl PrimitiveKind {
+    /// Whether a primitive of this type lies in a plane.
+    #[inline(always)]
+    pub fn is_flat(self) -> bool {
+        matches!(self, Self::Triangle | Self::Plane | Self::Disk)
+    }
+}
+
 impl Packed {
     /// Packs a shape; `None` where it has no extent.
     fn new(shape: &Shape) -> Option<Self> {
@@ -170,41 +188,43 @@ impl Geometry {
     /// those without extent are dropped and counted.
     pub fn build(parts: Vec<Part>) -> Self {
         let mut geometry = Self::default();
-        let mut packed = Vec::with_capacity(parts.len());
-        for part in parts {
-            let Some(fields) = Packed::new(&part.shape) else {
-                geometry.dropped += 1;
-                continue;
-            };
-            if let (Some(attributes), Shape::Triangle { vertices }) = (part.attributes, part.shape) {
-                let stored = attributes.reordered(Triangle::stored_order(vertices));
-                geometry.attributes.push((packed.len() as u32, stored));
-            }
-            packed.push(fields);
-            geometry.ids.push(part.id);
-        }
+        let packed = geometry.pack(&parts);
+        // The largest array here is not needed while the tree is built.
+        drop(parts);
         let unplaced = Slot { kind: PrimitiveKind::Plane, block: u32::MAX, place: 0 };
         geometry.slots = vec![unplaced; packed.len()];
 
         let (planes, finite): (Vec<u32>, Vec<u32>) =
             (0..packed.len() as u32).partition(|&i| packed[i as usize].kind() == PrimitiveKind::Plane);
-        for members in planes.chunks(BLOCK) {
-            geometry.push_block(PrimitiveKind::Plane, members, &packed);
-        }
-        let boxes: Vec<Aabb> = finite.iter().map(|&i| packed[i as usize].bounds()).collect();
+        let boxes: Vec<Aabb> = finite.par_iter().map(|&i| packed[i as usize].bounds()).collect();
+        let kinds: Vec<PrimitiveKind> = finite.par_iter().map(|&i| packed[i as usize].kind()).collect();
         geometry.bounds = boxes.iter().fold(Aabb::EMPTY, |a, &b| a.union(b));
-        let kinds: Vec<PrimitiveKind> = finite.iter().map(|&i| packed[i as usize].kind()).collect();
-        let mut members = Vec::with_capacity(BLOCK);
-        let bvh = bvh::build(&boxes, &kinds, &mut |kind, local| {
-            members.clear();
-            members.extend(local.iter().map(|&l| finite[l as usize]));
-            members.sort_unstable();
-            geometry.push_block(kind, &members, &packed)
-        });
+        let (bvh, mut leaves) = bvh::build(&boxes, &kinds).unzip();
+        let leaves = leaves.get_or_insert_default();
+        for leaf in &mut *leaves {
+            leaf.rename(&finite);
+        }
+        leaves.extend(planes.chunks(BLOCK).map(|members| LeafMembers::new(PrimitiveKind::Plane, members)));
+        geometry.fill_blocks(leaves, &packed);
         geometry.bvh = bvh.filter(|bvh| bvh.leaves >= MIN_BLOCKS_FOR_TREE);
-        geometry.spheres.shrink_to_fit();
-        geometry.triangles.shrink_to_fit();
         geometry
+    }
+
+    /// Packs parts and keeps what else is to be known of them.
+    fn pack(&mut self, parts: &[Part]) -> Vec<Packed> {
+        let packed: Vec<Option<Packed>> = parts.par_iter().map(|part| Packed::new(&part.shape)).collect();
+        let kept = packed.iter().flatten().count();
+        self.dropped = parts.len() - kept;
+        self.ids.reserve_exact(kept);
+        for (part, _) in parts.iter().zip(&packed).filter(|(_, packed)| packed.is_some()) {
+            if let (Some(attributes), Shape::Triangle { vertices }) = (part.attributes, part.shape) {
+                let stored = attributes.reordered(Triangle::stored_order(vertices));
+                self.attributes.push((self.ids.len() as u32, stored));
+            }
+            self.ids.push(part.id);
+        }
+        self.attributes.shrink_to_fit();
+        packed.into_iter().flatten().collect()
     }
 
     /// How many primitives there are.
@@ -217,12 +237,35 @@ impl Geometry {
         self.ids.is_empty()
     }
 
+    /// Unit normal and a point of the plane that a primitive lies in; `None` if it is not flat.
+    pub fn plane_of(&self, primitive: PrimitiveIndex) -> Option<(Vec3, Vec3)> {
+        let slot = self.slots[primitive as usize];
+        let (block, place) = (slot.block as usize, usize::from(slot.place));
+        match slot.kind {
+            PrimitiveKind::Triangle => {
+                let [ax, ay, az, bx, by, bz, cx, cy, cz, _] = self.triangles[block].get(place);
+                let [a, b, c] = [Vec3::new(ax, ay, az), Vec3::new(bx, by, bz), Vec3::new(cx, cy, cz)];
+                (b - a).cross(c - a).try_normalize().map(|normal| (normal, a))
+            }
+            PrimitiveKind::Disk => {
+                let [x, y, z, nx, ny, nz, _] = self.disks[block].get(place);
+                Some((Vec3::new(nx, ny, nz), Vec3::new(x, y, z)))
+            }
+            PrimitiveKind::Plane => {
+                let [x, y, z, distance] = self.planes[block].get(place);
+                let normal = Vec3::new(x, y, z);
+                Some((normal, normal * distance))
+            }
+            PrimitiveKind::Sphere | PrimitiveKind::Cone => None,
+        }
+    }
+
     /// Largest magnitude of any coordinate of anything finite.
     pub fn reach(&self) -> f32 {
         if self.bounds.is_empty() { 0.0 } else { self.bounds.min.abs().max(self.bounds.max.abs()).max_element() }
     }
 
-    /// What the corners of a triangle carry; `None` for most primitives.
+    /// What the corners of a triangle carry; `None` for most primitives. Found by halving: for a few look-ups.
     pub fn attributes_of(&self, primitive: PrimitiveIndex) -> Option<&VertexAttributes> {
         let found = self.attributes.binary_search_by_key(&primitive, |(index, _)| *index).ok()?;
         Some(&self.attributes[found].1)

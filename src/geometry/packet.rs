@@ -1,8 +1,8 @@
 //! One ray a lane, with what a box test needs of it.
 
-use super::Geometry;
 use super::bvh::{Node, WIDTH};
 use super::primitive::HIT_PADDING;
+use super::{Geometry, Rays};
 use crate::math::V3;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, mask32x8};
@@ -12,9 +12,6 @@ use glam::Vec3;
 /// shape by a few rounding errors of its operands, each at most 2^-24 of that coordinate; boxes must not cull it.
 const BOX_PADDING: f32 = 4e-6;
 
-/// Components of a direction below this are taken for this: its inverse stays finite, so that no box test makes a NaN.
-const LEAST_COMPONENT: f32 = 1e-30;
-
 /// Packets whose directions differ by more than this in some component are traced ray by ray. Measured: packets
 /// win by 2-4 where rays keep together and lose by as much where they do not; between 0.2 and 0.6 little changes.
 const MOST_SPREAD: f32 = 0.3;
@@ -22,11 +19,8 @@ const MOST_SPREAD: f32 = 0.3;
 /// A packet of rays, one a lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Packet<S: Simd> {
-    /// Origins.
-    pub origin: V3<S::f32s>,
-    /// Unit directions.
-    pub direction: V3<S::f32s>,
-    inverse: V3<S::f32s>,
+    /// The rays.
+    pub rays: Rays<S::f32s>,
     padding: f32,
     reach: Reach,
 }
@@ -44,15 +38,15 @@ impl<S: Simd> Packet<S> {
     /// A packet in the space of `geometry`.
     #[inline(always)]
     pub fn new(geometry: &Geometry, origin: V3<S::f32s>, direction: V3<S::f32s>) -> Self {
-        let inverse = V3::new(invert::<S>(direction.x), invert::<S>(direction.y), invert::<S>(direction.z));
+        let rays = Rays::new(origin, direction);
         let reach = Reach {
             origin_min: least_lanes::<S>(origin),
             origin_max: largest_lanes::<S>(origin),
-            inverse_min: least_lanes::<S>(inverse),
-            inverse_max: largest_lanes::<S>(inverse),
+            inverse_min: least_lanes::<S>(rays.inverse),
+            inverse_max: largest_lanes::<S>(rays.inverse),
         };
         let farthest = reach.origin_min.abs().max(reach.origin_max.abs()).max_element();
-        Self { origin, direction, inverse, padding: (farthest + geometry.reach()) * BOX_PADDING, reach }
+        Self { rays, padding: (farthest + geometry.reach()) * BOX_PADDING, reach }
     }
 
     /// How far beyond their faces boxes reach.
@@ -61,16 +55,10 @@ impl<S: Simd> Packet<S> {
         self.padding
     }
 
-    /// The inverse direction of one ray, without infinities.
-    #[inline(always)]
-    pub(super) fn inverse_of(&self, lane: usize) -> Vec3 {
-        self.inverse.lane(lane)
-    }
-
     /// Whether the rays fly close enough together to share a walk through the tree.
     #[inline(always)]
     pub fn is_coherent(&self) -> bool {
-        let spread = largest_lanes::<S>(self.direction) - least_lanes::<S>(self.direction);
+        let spread = largest_lanes::<S>(self.rays.direction) - least_lanes::<S>(self.rays.direction);
         spread.max_element() < MOST_SPREAD
     }
 
@@ -101,9 +89,12 @@ impl<S: Simd> Packet<S> {
     /// Which rays enter a padded box before their `limit`, and how far away.
     #[inline(always)]
     pub fn enter_box(&self, node: &Node, child: usize, limit: S::f32s) -> (<S::f32s as SimdBase<S>>::Mask, S::f32s) {
-        let (near_x, far_x) = self.slab(node.min[0][child], node.max[0][child], self.origin.x, self.inverse.x);
-        let (near_y, far_y) = self.slab(node.min[1][child], node.max[1][child], self.origin.y, self.inverse.y);
-        let (near_z, far_z) = self.slab(node.min[2][child], node.max[2][child], self.origin.z, self.inverse.z);
+        let (near_x, far_x) =
+            self.slab(node.min[0][child], node.max[0][child], self.rays.origin.x, self.rays.inverse.x);
+        let (near_y, far_y) =
+            self.slab(node.min[1][child], node.max[1][child], self.rays.origin.y, self.rays.inverse.y);
+        let (near_z, far_z) =
+            self.slab(node.min[2][child], node.max[2][child], self.rays.origin.z, self.rays.inverse.z);
         let zero = S::f32s::splat(limit.token(), 0.0);
         let near = near_x.max(near_y).max(near_z.max(zero));
         let far = far_x.min(far_y).min(far_z.min(limit));
@@ -126,14 +117,6 @@ const _: () = assert!(BOX_PADDING >= 2.0 * HIT_PADDING, "no box hides a hit, its
 const _: () = assert!(WIDTH == 8, "a node's boxes fill eight lanes");
 
 // Functions, not closures: those would not be inlined into the code of their SIMD level.
-
-/// One over each component of a direction, without infinities.
-#[inline(always)]
-fn invert<S: Simd>(d: S::f32s) -> S::f32s {
-    let simd = d.token();
-    let least = S::f32s::splat(simd, LEAST_COMPONENT);
-    S::f32s::splat(simd, 1.0) / d.abs().simd_lt(least).select(least.copysign(d), d)
-}
 
 /// The least of all lanes, component by component.
 #[inline(always)]

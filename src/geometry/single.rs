@@ -6,8 +6,7 @@
 use super::bvh::{Bvh, Child, Leaf, Node};
 use super::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use super::traverse::{Pending, STACK};
-use super::{BLOCK, Block, Packet, PrimitiveKind, Search, SphereTerms, Visitor};
-use crate::math::V3;
+use super::{BLOCK, Block, Packet, PrimitiveKind, Rays, Search, SphereTerms, Visitor};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 use glam::Vec3;
@@ -15,8 +14,7 @@ use glam::Vec3;
 /// One ray of a packet.
 struct Ray<S: Simd> {
     lane: usize,
-    origin: V3<f32x8<S>>,
-    direction: V3<f32x8<S>>,
+    rays: Rays<f32x8<S>>,
     origin_plus: Vec3,
     origin_minus: Vec3,
     inverse: Vec3,
@@ -25,14 +23,13 @@ struct Ray<S: Simd> {
 impl<S: Simd> Ray<S> {
     #[inline(always)]
     fn of_packet(simd: S, packet: &Packet<S>, lane: usize) -> Self {
-        let (origin, padding) = (packet.origin.lane(lane), packet.padding());
+        let (origin, padding) = (packet.rays.origin.lane(lane), packet.padding());
         Self {
             lane,
-            origin: V3::splat(simd, origin),
-            direction: V3::splat(simd, packet.direction.lane(lane)),
+            rays: Rays::splat(simd, &packet.rays, lane),
             origin_plus: origin + padding,
             origin_minus: origin - padding,
-            inverse: packet.inverse_of(lane),
+            inverse: packet.rays.inverse_of(lane),
         }
     }
 
@@ -125,20 +122,22 @@ impl Search<'_> {
 macro_rules! test {
     (Sphere, $blocks:ident, $search:ident, $simd:ident, $block:expr, $ray:ident, $t_min:ident) => {
         match $search.sphere_terms {
-            SphereTerms::None => {
-                Sphere::intersect(&$search.geometry.spheres[$block].load($simd), $ray.origin, $ray.direction, $t_min)
+            SphereTerms::None => Sphere::intersect(&$search.geometry.spheres[$block].load($simd), &$ray.rays, $t_min),
+            SphereTerms::Exact(terms) => {
+                Sphere::intersect_terms(&terms[$block].load($simd), $ray.rays.direction, $t_min)
             }
-            SphereTerms::Exact(terms) => Sphere::intersect_terms(&terms[$block].load($simd), $ray.direction, $t_min),
-            SphereTerms::Thesis(terms) => Sphere::intersect_thesis(&terms[$block].load($simd), $ray.direction, $t_min),
+            SphereTerms::Thesis(terms) => {
+                Sphere::intersect_thesis(&terms[$block].load($simd), $ray.rays.direction, $t_min)
+            }
         }
     };
     ($kernel:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $ray:ident, $t_min:ident) => {
-        $kernel::intersect(&$search.geometry.$blocks[$block].load($simd), $ray.origin, $ray.direction, $t_min)
+        $kernel::intersect(&$search.geometry.$blocks[$block].load($simd), &$ray.rays, $t_min)
     };
 }
 
 macro_rules! define_leaf_tests {
-    ($($kernel:ident $fields:literal $blocks:ident,)+) => {
+    ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
         impl Search<'_> {
             /// Tests one ray against the primitives of a leaf, all at once.
             fn visit_leaf_by_ray<S: Simd, V: Visitor<S>>(&self, simd: S, leaf: Leaf, ray: &Ray<S>, visitor: &mut V) {

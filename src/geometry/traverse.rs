@@ -3,7 +3,7 @@
 use super::bvh::{Bvh, Child, Leaf, WIDTH};
 use super::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use super::visitor::Mask;
-use super::{Block, Geometry, Packet, PrimitiveIndex, PrimitiveKind, Visitor};
+use super::{Block, Geometry, Packet, PrimitiveIndex, PrimitiveKind, Rays, Visitor};
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -45,7 +45,7 @@ pub(super) const STACK: usize = 512;
 /// Room for the subtrees that wait during a traversal. Kept between packets: clearing it would cost more than most
 /// traversals do.
 #[derive(Debug)]
-pub struct Stack([Pending; STACK]);
+pub struct Stack(pub(super) [Pending; STACK]);
 
 impl Default for Stack {
     fn default() -> Self {
@@ -143,47 +143,48 @@ impl<'a> Search<'a> {
 
     /// Sphere blocks as this search tests them.
     #[inline(always)]
-    fn test_sphere<S: Simd>(
+    pub(super) fn test_sphere<S: Simd>(
         &self,
         simd: S,
         block: usize,
         place: usize,
-        packet: &Packet<S>,
+        rays: &Rays<S::f32s>,
         t_min: S::f32s,
     ) -> (Mask<S>, S::f32s) {
         match self.sphere_terms {
             SphereTerms::None => {
                 let fields = self.geometry.spheres[block].splat(simd, place);
-                Sphere::intersect(&fields, packet.origin, packet.direction, t_min)
+                Sphere::intersect(&fields, rays, t_min)
             }
             SphereTerms::Exact(terms) => {
-                Sphere::intersect_terms(&terms[block].splat(simd, place), packet.direction, t_min)
+                Sphere::intersect_terms(&terms[block].splat(simd, place), rays.direction, t_min)
             }
             SphereTerms::Thesis(terms) => {
-                Sphere::intersect_thesis(&terms[block].splat(simd, place), packet.direction, t_min)
+                Sphere::intersect_thesis(&terms[block].splat(simd, place), rays.direction, t_min)
             }
         }
     }
 }
 
 /// Tests one primitive: spheres by the terms at hand, all others by their kernel.
-macro_rules! test {
-    (Sphere, $blocks:ident, $search:ident, $simd:ident, $block:expr, $place:ident, $packet:ident, $t_min:ident) => {
-        $search.test_sphere($simd, $block, $place, $packet, $t_min)
+macro_rules! test_place {
+    (Sphere, $blocks:ident, $search:ident, $simd:ident, $block:expr, $place:ident, $rays:expr, $t_min:ident) => {
+        $search.test_sphere($simd, $block, $place, $rays, $t_min)
     };
-    ($kernel:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $place:ident, $packet:ident, $t_min:ident) => {{
+    ($kernel:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $place:ident, $rays:expr, $t_min:ident) => {{
         let fields = $search.geometry.$blocks[$block].splat($simd, $place);
-        $kernel::intersect(&fields, $packet.origin, $packet.direction, $t_min)
+        $kernel::intersect(&fields, $rays, $t_min)
     }};
 }
+pub(super) use test_place;
 
 macro_rules! define_leaf_tests {
-    ($($kernel:ident $fields:literal $blocks:ident,)+) => {
+    ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
         impl Search<'_> {
             /// Tests the primitives of a leaf that lie at the given places. Not inlined: the traversals around it are
             /// compiled for every level and visitor, and each would hold every kernel.
             fn visit_places<S: Simd, V: Visitor<S>>(
-                &self, simd: S, leaf: Leaf, places: Range<usize>, packet: &Packet<S>, visitor: &mut V,
+                &self, simd: S, leaf: Leaf, places: Range<usize>, rays: &Rays<S::f32s>, visitor: &mut V,
             ) {
                 simd.vectorize(
                     #[inline(always)]
@@ -195,7 +196,7 @@ macro_rules! define_leaf_tests {
                                 if visitor.accepts(index) {
                                     let t_min = visitor.t_min(index);
                                     let (mask, t) =
-                                        test!($kernel, $blocks, self, simd, leaf.block as usize, place, packet, t_min);
+                                        test_place!($kernel, $blocks, self, simd, leaf.block as usize, place, rays, t_min);
                                     visitor.hit(mask & t.simd_le(visitor.limit()), t, index);
                                 }
                             }
@@ -212,7 +213,7 @@ macro_rules! define_leaf_tests {
                 let len = match leaf.kind {
                     $(PrimitiveKind::$kernel => self.geometry.$blocks[leaf.block as usize].len,)+
                 };
-                self.visit_places(simd, leaf, 0..len as usize, packet, visitor);
+                self.visit_places(simd, leaf, 0..len as usize, &packet.rays, visitor);
             }
         }
     };
@@ -226,12 +227,12 @@ impl Search<'_> {
         &self,
         simd: S,
         primitive: PrimitiveIndex,
-        packet: &Packet<S>,
+        rays: &Rays<S::f32s>,
         visitor: &mut V,
     ) {
         let slot = self.geometry.slots[primitive as usize];
         let place = usize::from(slot.place);
-        self.visit_places(simd, Leaf { kind: slot.kind, block: slot.block }, place..place + 1, packet, visitor);
+        self.visit_places(simd, Leaf { kind: slot.kind, block: slot.block }, place..place + 1, rays, visitor);
     }
 }
 

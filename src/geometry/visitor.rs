@@ -102,6 +102,7 @@ impl<S: Simd> Visitor<S> for ClosestHit<S> {
 #[derive(Clone, Copy)]
 pub struct AnyHit<'a, S: Simd> {
     limit: S::f32s,
+    sources: S::u32s,
     opaque: Opaque<'a>,
     /// Lanes with something in the way.
     pub blocked: Mask<S>,
@@ -133,15 +134,17 @@ impl Opaque<'_> {
 }
 
 impl<'a, S: Simd> AnyHit<'a, S> {
-    /// Nothing found yet; hits count in (0, `limit`), and lanes with a limit of 0 or less are left alone.
+    /// Nothing found yet; hits count in (0, `limit`), and lanes with a limit of 0 or less are left alone. A lane's
+    /// `source` is a primitive that it cannot hit, or [`NO_PRIMITIVE`].
     #[inline(always)]
-    pub fn new(simd: S, limit: S::f32s, opaque: Opaque<'a>) -> Self {
+    pub fn new(simd: S, limit: S::f32s, sources: S::u32s, opaque: Opaque<'a>) -> Self {
         let limit = limit.min(S::f32s::splat(simd, f32::MAX));
         // The interval's end is exclusive: what lies at the light does not shadow it.
         let zero = S::f32s::splat(simd, 0.0);
         let below = S::f32s::from_bits(limit.to_bits() - 1);
         let limit = limit.simd_gt(zero).select(below, zero - 1.0);
-        Self { limit, opaque, blocked: Mask::<S>::splat(simd, false), blocker: NO_PRIMITIVE, passed_transparent: false }
+        let blocked = Mask::<S>::splat(simd, false);
+        Self { limit, sources, opaque, blocked, blocker: NO_PRIMITIVE, passed_transparent: false }
     }
 }
 
@@ -165,6 +168,7 @@ impl<S: Simd> Visitor<S> for AnyHit<'_, S> {
 
     #[inline(always)]
     fn hit(&mut self, mask: Mask<S>, _t: S::f32s, primitive: PrimitiveIndex) {
+        let mask = mask & self.sources.simd_ne(primitive);
         if mask.any_true() {
             self.blocked |= mask;
             self.limit = mask.select(S::f32s::splat(self.limit.token(), -1.0), self.limit);
@@ -189,9 +193,11 @@ impl<S: Simd> Visitor<S> for AnyHit<'_, S> {
 
     #[inline(always)]
     fn lane_hit(&mut self, lane: usize, _t: f32, primitive: PrimitiveIndex) {
-        self.blocked.set(lane, true);
-        self.limit[lane] = -1.0;
-        self.blocker = primitive;
+        if self.sources[lane] != primitive {
+            self.blocked.set(lane, true);
+            self.limit[lane] = -1.0;
+            self.blocker = primitive;
+        }
     }
 }
 
@@ -199,6 +205,7 @@ impl<S: Simd> Visitor<S> for AnyHit<'_, S> {
 #[derive(Clone, Copy, Debug)]
 pub struct NextCrossing<'a, S: Simd> {
     opaque: &'a [bool],
+    sources: S::u32s,
     last_t: S::f32s,
     last_primitive: S::u32s,
     /// The crossing found.
@@ -206,10 +213,17 @@ pub struct NextCrossing<'a, S: Simd> {
 }
 
 impl<'a, S: Simd> NextCrossing<'a, S> {
-    /// Looks beyond the crossing (`last_t`, `last_primitive`); at the start that is (0, [`NO_PRIMITIVE`]).
+    /// Looks beyond the crossing (`last_t`, `last_primitive`); at the start that is (0, [`NO_PRIMITIVE`]). As for
+    /// [`AnyHit`], a lane does not see its source.
     #[inline(always)]
-    pub fn new(simd: S, opaque: &'a [bool], last_t: S::f32s, last_primitive: S::u32s, limit: S::f32s) -> Self {
-        Self { opaque, last_t, last_primitive, closest: ClosestHit::new(simd, last_t, limit) }
+    pub fn new(
+        simd: S,
+        opaque: &'a [bool],
+        sources: S::u32s,
+        (last_t, last_primitive): (S::f32s, S::u32s),
+        limit: S::f32s,
+    ) -> Self {
+        Self { opaque, sources, last_t, last_primitive, closest: ClosestHit::new(simd, last_t, limit) }
     }
 }
 
@@ -235,7 +249,7 @@ impl<S: Simd> Visitor<S> for NextCrossing<'_, S> {
 
     #[inline(always)]
     fn hit(&mut self, mask: Mask<S>, t: S::f32s, primitive: PrimitiveIndex) {
-        self.closest.hit(mask, t, primitive);
+        self.closest.hit(mask & self.sources.simd_ne(primitive), t, primitive);
     }
 
     #[inline(always)]
@@ -259,6 +273,8 @@ impl<S: Simd> Visitor<S> for NextCrossing<'_, S> {
 
     #[inline(always)]
     fn lane_hit(&mut self, lane: usize, t: f32, primitive: PrimitiveIndex) {
-        self.closest.lane_hit(lane, t, primitive);
+        if self.sources[lane] != primitive {
+            self.closest.lane_hit(lane, t, primitive);
+        }
     }
 }

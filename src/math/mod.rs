@@ -3,6 +3,7 @@
 //! Value arithmetic (whatever reaches a pixel) uses IEEE add, sub, mul, div and sqrt in one order, never
 //! fused multiply-add and never the system's libm, so that every machine, level and thread count agrees.
 
+pub mod arctangent;
 pub mod power;
 pub mod simd;
 pub mod vector;

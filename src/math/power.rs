@@ -18,6 +18,12 @@ pub fn pow<S: Simd, F: Lanes<S>>(base: F, exponent: F) -> F {
     positive.select(exp2(log2(safe) * exponent), zero)
 }
 
+/// e to the power of `x`, for x <= 88; 0 where the result is below 2^-126. Relative error below 1e-5 for x > -64.
+#[inline(always)]
+pub fn exp<S: Simd, F: Lanes<S>>(x: F) -> F {
+    exp2(x * std::f32::consts::LOG2_E)
+}
+
 /// Binary logarithm of a positive normal number.
 ///
 /// The mantissa is brought into [√½, √2), where ln(m) = 2 artanh((m-1)/(m+1)) converges fast (Abramowitz and Stegun 4.1.27).

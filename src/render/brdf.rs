@@ -2,7 +2,7 @@
 //! metallic-roughness (Khronos, glTF 2.0 appendix B).
 
 use super::frame::Frame;
-use super::gather::Materials;
+use super::materials::Materials;
 use super::tables::Row;
 use crate::math::V3;
 use crate::math::power::pow;
@@ -33,31 +33,30 @@ struct MetallicRoughness<S: Simd> {
 }
 
 impl<S: Simd> Reflectance<S> {
+    /// `opacity` is what transparency leaves of the local light.
     #[inline(always)]
     pub fn gather(
         simd: S,
         frame: &Frame<'_>,
-        materials: &Materials<S>,
+        materials: &Materials<'_, S>,
         color: V3<S::f32s>,
         opacity: V3<S::f32s>,
     ) -> Self {
-        let table = &frame.tables.materials;
-        let some_metallic = frame.plan.metallic_roughness && materials.any(|m| table[m].metallic_roughness);
-        let some_phong = !some_metallic || materials.any(|m| !table[m].metallic_roughness);
+        let some_metallic = frame.plan.metallic_roughness && materials.any(|m| m.metallic_roughness);
+        let some_phong = !some_metallic || materials.any(|m| !m.metallic_roughness);
         let mut phong = None;
         if some_phong {
-            let matte = opacity * materials.triple(simd, frame, Row::Diffuse) * color;
+            let matte = opacity * materials.triple(simd, Row::Diffuse) * color;
             let mut highlight = None;
-            if materials.any(|m| table[m].shiny) {
-                let shininess = materials.row(simd, frame, Row::Shininess as usize);
-                highlight = Some((materials.triple(simd, frame, Row::Specular), shininess));
+            if frame.plan.highlights && materials.any(|m| m.shiny) {
+                highlight = Some((materials.triple(simd, Row::Specular), materials.row(simd, Row::Shininess as usize)));
             }
             phong = Some(Phong { matte, highlight });
         }
         let mut metallic_roughness = None;
         if some_metallic {
-            let metallic = materials.row(simd, frame, Row::Metallic as usize);
-            let roughness = materials.row(simd, frame, Row::Roughness as usize);
+            let metallic = materials.row(simd, Row::Metallic as usize);
+            let roughness = materials.row(simd, Row::Roughness as usize);
             metallic_roughness = Some(MetallicRoughness { color, opacity, metallic, roughness });
         }
         Self { phong, metallic_roughness }

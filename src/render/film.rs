@@ -3,6 +3,9 @@
 //! Pixels are stored tile by tile, so that workers own disjoint tiles without locks or shared mutable memory.
 
 use super::resolve::Encoder;
+use super::samples::{Colors, PACKET, pixel_at, sample_at};
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 
 /// Edge of a tile in pixels. Tiles are the unit of work and of memory.
 pub const TILE: usize = 64;
@@ -27,14 +30,15 @@ impl Planes {
     }
 }
 
-/// One tile's pixels, row by row; planes that the film does not keep are empty.
+/// One tile's pixels, row by row but for their linear colours; planes that the film does not keep are empty.
 #[derive(Debug, Default)]
 pub(super) struct FilmTile {
     pub x: usize,
     pub y: usize,
     pub width: usize,
     pub height: usize,
-    pub color: Vec<[f32; 3]>,
+    /// Linear colours, by sample.
+    pub color: Colors,
     pub rgba: Vec<[u8; 4]>,
     pub depth: Vec<f32>,
     pub normal: Vec<[f32; 3]>,
@@ -51,7 +55,7 @@ impl FilmTile {
             y,
             width,
             height,
-            color: vec![[0.0; 3]; pixels],
+            color: Colors::black(),
             rgba: vec![[0, 0, 0, 255]; pixels],
             depth: vec![f32::INFINITY; kept(planes.depth)],
             normal: vec![[0.0; 3]; kept(planes.normal)],
@@ -61,10 +65,32 @@ impl FilmTile {
     }
 
     /// Encodes the linear colours.
-    pub fn encode(&mut self, encoder: &Encoder) {
-        for (out, color) in self.rgba.iter_mut().zip(&self.color) {
-            let [r, g, b] = encoder.encode(*color);
-            *out = [r, g, b, 255];
+    pub fn encode<S: Simd>(&mut self, simd: S, encoder: &Encoder) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for first in (0..TILE * TILE).step_by(S::f32s::LEN) {
+                    let [x, y] = pixel_at(first as u32).map(usize::from);
+                    if x < self.width && y < self.height {
+                        let pixels = encoder.encode(simd, self.color.load(simd, first));
+                        self.store_square(x, y, &pixels[..S::f32s::LEN]);
+                    }
+                }
+            },
+        );
+    }
+
+    /// Stores pixels that follow each other as samples, of which the first lies at the start of a row of a packet.
+    #[inline(always)]
+    fn store_square(&mut self, x: usize, y: usize, pixels: &[[u8; 4]]) {
+        for (row, pixels) in pixels.chunks_exact(PACKET).enumerate().take(self.height - y) {
+            let start = (y + row) * self.width + x;
+            if x + PACKET <= self.width {
+                self.rgba[start..start + PACKET].copy_from_slice(pixels);
+            } else {
+                let inside = self.width - x;
+                self.rgba[start..start + inside].copy_from_slice(&pixels[..inside]);
+            }
         }
     }
 }
@@ -111,8 +137,8 @@ impl Film {
 
     /// Linear, unclamped colour of a pixel, before exposure and tone map.
     pub fn color(&self, x: u32, y: u32) -> [f32; 3] {
-        let (tile, pixel) = self.find(x, y);
-        tile.color[pixel]
+        let (tile, _) = self.find(x, y);
+        tile.color.get(sample_at(x as usize % TILE, y as usize % TILE) as usize).into()
     }
 
     /// Distance from the eye to what a pixel sees, +inf on a miss; `None` when the film keeps no such plane.

@@ -6,19 +6,20 @@ use super::resolve::Encoder;
 use super::tables::Tables;
 use super::tile::{self, Worker};
 use super::{Film, FrameStats};
+use crate::geometry::beam::Projection;
 use crate::geometry::{Block, SphereTerms};
 use crate::math::{SimdToken, dispatch};
 use crate::scene::camera::CameraFrame;
 use crate::scene::light::{Falloff, LightKind};
 use crate::scene::{Camera, Light, Scene};
-use crate::settings::{Settings, SphereCache};
+use crate::settings::{Settings, SphereCache, Visibility};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// Asks a frame to stop between tiles.
+/// Asks a frame to stop: between tiles, and within one between the queues of its rays.
 #[derive(Clone, Debug, Default)]
 pub struct CancelToken(Arc<AtomicBool>);
 
@@ -40,14 +41,16 @@ impl CancelToken {
 }
 
 /// Everything a frame needs that outlives it: threads, queues, caches.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Scratch {
     /// Stops a frame early.
     pub cancel: CancelToken,
+    /// The share of the proven margins that beams use: 1. With less they may lose what is seen; that is for tests of
+    /// whether such a loss would be noticed.
+    pub beam_margin: f32,
     pool: Option<Pool>,
     tables: Tables,
     sphere_terms: Vec<Block<4>>,
-    lights: Vec<Light>,
     around_eye: Vec<u32>,
 }
 
@@ -55,20 +58,19 @@ pub struct Scratch {
 #[derive(Debug)]
 struct Pool {
     asked: i32,
-    threads: rayon::ThreadPool,
+    /// `None` where the calling thread does it all.
+    threads: Option<rayon::ThreadPool>,
     workers: Vec<Mutex<Worker>>,
 }
 
 impl Pool {
     fn new(asked: i32) -> Self {
-        let threads = thread_count(asked);
-        let built = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .thread_name(|i| format!("tracer {i}"))
-            .build()
-            .or_else(|_| rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build());
-        let threads = built.expect("a pool of the current thread needs no new thread");
-        let workers = (0..threads.current_num_threads()).map(|_| Mutex::default()).collect();
+        let count = thread_count(asked);
+        let builder = rayon::ThreadPoolBuilder::new().num_threads(count).thread_name(|i| format!("tracer {i}"));
+        // Where the system gives no threads, the one that asks is left.
+        let threads = if count > 1 { builder.build().ok() } else { None };
+        let workers = threads.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
+        let workers = (0..workers).map(|_| Mutex::default()).collect();
         Self { asked, threads, workers }
     }
 }
@@ -86,23 +88,44 @@ pub fn thread_count(asked: i32) -> usize {
 impl Scratch {
     /// An empty scratch; the thread pool is made by the first frame.
     pub fn new() -> Self {
-        Self::default()
+        Self {
+            cancel: CancelToken::default(),
+            beam_margin: 1.0,
+            pool: None,
+            tables: Tables::default(),
+            sphere_terms: Vec::new(),
+            around_eye: Vec::new(),
+        }
+    }
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self::new()
     }
 }
 
 /// All that the tiles of one frame share.
 pub(super) struct Frame<'a> {
     pub scene: &'a Scene,
+    pub cancel: &'a CancelToken,
     pub settings: &'a Settings,
     pub plan: Plan,
     pub tables: &'a Tables,
     pub camera: CameraFrame,
+    /// The space of beams from the eye.
+    pub projection: Projection,
+    /// Half of the picture's width and height at unit distance.
+    pub half_picture: [f32; 2],
+    pub beam_margin: f32,
     pub lights: &'a [Light],
     /// Ambient light of the scene.
     pub ambient: Vec3,
     pub sphere_terms: SphereTerms<'a>,
     /// Transparent bodies around the eye, outermost first.
     pub around_eye: &'a [u32],
+    /// Whether anybody asks what samples see.
+    pub keeps_seen: bool,
     /// Whether the film keeps anything of what it sees, and normals among it.
     pub keeps_planes: bool,
     pub keeps_normals: bool,
@@ -113,6 +136,8 @@ pub(super) struct Frame<'a> {
 ///
 /// The picture depends on scene, camera, settings and the film's size alone: not on what was rendered before, nor on
 /// the number of threads. A SIMD level that the machine lacks falls back to the best it has.
+///
+/// Once `scratch` and `film` have seen such frames, none allocates; only rayon's queue takes a block every 63 of them.
 pub fn render_frame(
     scene: &Scene,
     camera: &Camera,
@@ -122,7 +147,7 @@ pub fn render_frame(
 ) -> FrameStats {
     let start = Instant::now();
     let token = SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best);
-    let Scratch { cancel, pool, tables, sphere_terms, lights, around_eye } = scratch;
+    let Scratch { cancel, beam_margin, pool, tables, sphere_terms, around_eye } = scratch;
     if tables.generation != Some(scene.generation) {
         *tables = Tables::new(scene);
     }
@@ -132,11 +157,8 @@ pub fn render_frame(
     let Some(Pool { threads, workers, .. }) = pool else { unreachable!("the pool was just made") };
 
     let plan = Plan::with_tables(scene, settings, tables);
-    lights.clone_from(&scene.lights);
-    if scene.headlight {
-        let kind = LightKind::Point { position: camera.eye };
-        lights.push(Light { name: None, kind, color: Vec3::ONE, falloff: Falloff::None });
-    }
+    let at_eye = LightKind::Point { position: camera.eye };
+    let headlight = [Light { name: None, kind: at_eye, color: Vec3::ONE, falloff: Falloff::None }];
     around_eye.clear();
     if plan.media {
         super::inside::bodies_around(scene, tables, camera.eye, around_eye);
@@ -145,13 +167,19 @@ pub fn render_frame(
         let thesis = plan.sphere_cache == SphereCache::Thesis;
         dispatch!(token, simd => scene.geometry.fill_sphere_terms(simd, camera.eye, thesis, sphere_terms));
     }
+    let view = camera.frame(film.width(), film.height());
+    let axes = [view.right.normalize(), view.up.normalize(), view.forward];
     let frame = Frame {
         scene,
+        cancel,
         settings,
         plan,
         tables,
-        camera: camera.frame(film.width(), film.height()),
-        lights,
+        camera: view,
+        projection: Projection::new(view.eye, axes, false, scene.geometry.reach(), *beam_margin),
+        half_picture: [view.right.length(), view.up.length()],
+        beam_margin: *beam_margin,
+        lights: if scene.headlight { &headlight } else { &scene.lights },
         ambient: scene.render.ambient,
         sphere_terms: match plan.sphere_cache {
             SphereCache::Off => SphereTerms::None,
@@ -159,6 +187,7 @@ pub fn render_frame(
             SphereCache::Thesis => SphereTerms::Thesis(sphere_terms),
         },
         around_eye,
+        keeps_seen: film.planes().any() || settings.visibility == Visibility::Subsample,
         keeps_planes: film.planes().any(),
         keeps_normals: film.planes().normal,
         encoder: Encoder::new(settings),
@@ -173,7 +202,10 @@ pub fn render_frame(
         let mut worker = workers[index].lock().unwrap_or_else(PoisonError::into_inner);
         dispatch!(token, simd => tile::render(simd, &frame, film_tile, &mut worker));
     };
-    threads.install(|| film.tiles.par_iter_mut().with_max_len(1).for_each(work));
+    match threads {
+        Some(threads) => threads.install(|| film.tiles.par_iter_mut().with_max_len(1).for_each(work)),
+        None => film.tiles.iter_mut().for_each(work),
+    }
     film.assemble();
 
     let mut stats = FrameStats { completed: !cancel.is_cancelled(), ..FrameStats::default() };
@@ -183,4 +215,69 @@ pub fn render_frame(
     }
     stats.frame_ms = start.elapsed().as_secs_f64() * 1e3;
     stats
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::Planes;
+    use crate::scene::{LoadOptions, load_embedded};
+    use std::time::Duration;
+
+    /// Twelve panes of glass in a row, each a body of its own.
+    fn panes() -> Scene {
+        let pane =
+            |i: i32| format!(r#"{{ "type": "box", "min": [-9, -9, {i}], "max": [9, 9, {i}.5], "material": "glass" }}"#);
+        let panes: Vec<String> = (0..12).map(pane).collect();
+        let text = format!(
+            r#"{{ "version": 1, "camera": {{ "position": [0.3, 0.2, -3], "look_at": [0, 0, 0] }},
+                  "materials": {{ "glass": {{ "transparency": 1, "absorption": [0.1, 0, 0] }} }},
+                  "lights": [{{ "type": "point", "position": [0, 5, -5] }}], "objects": [{}] }}"#,
+            panes.join(",")
+        );
+        let text: &'static [u8] = Box::leak(text.into_bytes().into_boxed_slice());
+        let files = Box::leak(Box::new([("panes.json", text)]));
+        load_embedded("panes.json", files, &LoadOptions::default()).expect("the panes are a valid scene")
+    }
+
+    fn deep() -> Settings {
+        Settings { depth: Some(20), ..Settings::default() }
+    }
+
+    #[test]
+    fn memory_grows_with_depth_and_not_with_the_number_of_paths() {
+        let scene = panes();
+        let mut scratch = Scratch::new();
+        let mut film = Film::new(4, 4, Planes::default());
+        let stats = render_frame(&scene, &scene.cameras[0].camera, &deep(), &mut scratch, &mut film);
+        let rays = stats.rays.reflection + stats.rays.refraction;
+        assert!(rays > 16 << 17, "{rays} rays are no test");
+        for worker in &scratch.pool.expect("a frame was rendered").workers {
+            let room = worker.lock().expect("no worker panicked").room();
+            assert!(room < 21 * 2 * 64, "room for {room} rays and bodies after {rays} rays");
+        }
+    }
+
+    #[test]
+    fn a_frame_stops_within_a_tile() {
+        let scene = panes();
+        let mut scratch = Scratch::new();
+        let cancel = scratch.cancel.clone();
+        let mut film = Film::new(64, 64, Planes::default());
+        let start = Instant::now();
+        let stats = std::thread::scope(|threads| {
+            threads.spawn(|| {
+                std::thread::sleep(Duration::from_millis(100));
+                cancel.cancel();
+            });
+            render_frame(&scene, &scene.cameras[0].camera, &deep(), &mut scratch, &mut film)
+        });
+        assert!(!stats.completed && start.elapsed() < Duration::from_secs(5), "stopped after {:?}", start.elapsed());
+        // The queues that were left do not reach the next frame.
+        cancel.reset();
+        let settings = Settings { depth: Some(3), ..Settings::default() };
+        let after = render_frame(&scene, &scene.cameras[0].camera, &settings, &mut scratch, &mut film);
+        let fresh = render_frame(&scene, &scene.cameras[0].camera, &settings, &mut Scratch::new(), &mut film);
+        assert_eq!(after.rays, fresh.rays);
+    }
 }

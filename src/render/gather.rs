@@ -1,17 +1,19 @@
-//! From hits to lanes: surfaces, material numbers and colours of a packet whose rays may have hit different things.
+//! From hits to lanes: the surfaces of a packet whose rays may have hit different things.
 //!
-//! Where all rays hit the same primitive, its numbers are splat; otherwise they are gathered lane by lane. The kernels
-//! that run on them are the same text, so the bits do not depend on who else is in the packet.
+//! Where all rays hit the same primitive, its numbers are splat; where they hit few, they are blended by mask; otherwise
+//! they are gathered lane by lane. The kernels that run on them are the same text, so the bits do not depend on who
+//! else is in the packet.
 
 use super::frame::Frame;
+use super::materials::Materials;
 use super::queue::MOST_LANES;
-use super::tables::{ROWS, Row};
+use super::tables::Row;
 use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, SurfacePoint, Triangle, for_each_primitive};
-use crate::geometry::{BLOCK, Block, Geometry, NO_PRIMITIVE, Packet, PrimitiveKind, Slot};
+use crate::geometry::{BLOCK, Block, Geometry, NO_PRIMITIVE, PrimitiveKind, Rays, Slot};
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 /// Lane mask of native width.
 type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
@@ -22,7 +24,7 @@ pub(super) struct Hits<'a> {
     /// Bit set of the lanes that hit something.
     pub active: u64,
     /// The primitive that all hitting lanes hit, if there is just one.
-    common: Option<u32>,
+    pub common: Option<u32>,
 }
 
 impl<'a> Hits<'a> {
@@ -44,17 +46,44 @@ impl<'a> Hits<'a> {
     pub fn lanes(&self) -> impl Iterator<Item = usize> + use<> {
         bits(self.active)
     }
+
+    /// A lane that hit something; there must be one.
+    #[inline(always)]
+    pub fn first(&self) -> usize {
+        self.active.trailing_zeros() as usize
+    }
+
+    /// `N` numbers of each hitting lane's primitive; the first one's where there is no hit.
+    #[inline(always)]
+    pub fn gather<S: Simd, const N: usize>(&self, simd: S, numbers: impl Fn(u32) -> [f32; N]) -> [S::f32s; N] {
+        let mut gathered = [S::f32s::splat(simd, 0.0); N];
+        let first = numbers(self.primitives[self.first()]);
+        for (lanes, number) in gathered.iter_mut().zip(first) {
+            *lanes = S::f32s::splat(simd, number);
+        }
+        if self.common.is_none() {
+            for lane in self.lanes() {
+                for (lanes, number) in gathered.iter_mut().zip(numbers(self.primitives[lane])) {
+                    lanes.as_mut_slice()[lane] = number;
+                }
+            }
+        }
+        gathered
+    }
 }
 
 /// Set bits, lowest first.
 pub(super) fn bits(mut set: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        (set != 0).then(|| {
-            let lane = set.trailing_zeros() as usize;
-            set &= set - 1;
-            lane
-        })
-    })
+    std::iter::from_fn(
+        #[inline(always)]
+        move || {
+            (set != 0).then(|| {
+                let lane = set.trailing_zeros() as usize;
+                set &= set - 1;
+                lane
+            })
+        },
+    )
 }
 
 /// Surfaces hit by a packet. Lanes without a hit hold anything.
@@ -65,6 +94,8 @@ pub(super) struct Surfaces<S: Simd> {
     pub shading_normal: V3<S::f32s>,
     /// Weights of a triangle's corners in the kernel's order; only where the plan interpolates.
     pub weights: [S::f32s; 3],
+    /// Bit set of the lanes whose primitive is flat.
+    pub flat: u64,
 }
 
 /// The surfaces at distances `t`.
@@ -80,15 +111,19 @@ pub(super) fn surfaces<S: Simd>(
     let geometry = &frame.scene.geometry;
     let zero = S::f32s::splat(simd, 0.0);
     let blank = SurfacePoint { position: V3::all(zero), normal: V3::all(zero), scale: zero };
-    let mut surfaces = Surfaces { point: blank, shading_normal: V3::all(zero), weights: [zero; 3] };
-    let slots = slots_of(geometry, hits);
+    let mut surfaces = Surfaces { point: blank, shading_normal: V3::all(zero), weights: [zero; 3], flat: 0 };
+    let places = Places::new(geometry, hits);
     let mut left = hits.active;
     while left != 0 {
         let first = left.trailing_zeros() as usize;
-        let group = Group { geometry, hits, slots: &slots, kind: slots[first].kind, first };
-        let lanes = group.lanes(left);
+        let group = Group { geometry, hits, places: &places, first };
+        let kind = places.slots[first].kind;
+        let lanes = group.lanes(simd, left);
         left &= !lanes;
-        let part = group.surface(simd, origin, direction, t);
+        if kind.is_flat() {
+            surfaces.flat |= lanes;
+        }
+        let part = group.surface(simd, lanes, origin, direction, t);
         if lanes == hits.active {
             surfaces.point = part;
         } else {
@@ -99,55 +134,73 @@ pub(super) fn surfaces<S: Simd>(
                 scale: mask.select(part.scale, surfaces.point.scale),
             };
         }
-        if frame.plan.vertex_attributes && group.kind == PrimitiveKind::Triangle {
-            let fields = group.fields(simd, &geometry.triangles);
-            surfaces.weights = Triangle::barycentric(&fields, origin, direction);
+        if frame.plan.vertex_attributes && kind == PrimitiveKind::Triangle {
+            let fields = group.fields(simd, lanes, &geometry.triangles);
+            surfaces.weights = Triangle::barycentric(&fields, &Rays::new(origin, direction));
         }
     }
     surfaces.shading_normal = surfaces.point.normal;
     if frame.plan.vertex_attributes {
-        interpolate_normals(geometry, hits, &mut surfaces);
+        interpolate_normals(simd, frame, hits, &mut surfaces);
     }
     surfaces
 }
 
 /// Replaces the shading normals of triangles whose corners carry their own.
 #[inline(always)]
-fn interpolate_normals<S: Simd>(geometry: &Geometry, hits: &Hits<'_>, surfaces: &mut Surfaces<S>) {
-    for lane in hits.lanes() {
-        let Some(normals) = geometry.attributes_of(hits.primitives[lane]).and_then(|a| a.normals) else { continue };
-        let [u, v, w] = surfaces.weights.map(|weight| weight[lane]);
-        let blend = normals[0] * u + normals[1] * v + normals[2] * w;
-        let length = blend.dot(blend).sqrt();
-        if length > 0.0 {
-            let flat = surfaces.point.normal.lane(lane);
-            let unit = blend / length;
-            let unit = if unit.dot(flat) < 0.0 { -unit } else { unit };
-            surfaces.shading_normal.x[lane] = unit.x;
-            surfaces.shading_normal.y[lane] = unit.y;
-            surfaces.shading_normal.z[lane] = unit.z;
+fn interpolate_normals<S: Simd>(simd: S, frame: &Frame<'_>, hits: &Hits<'_>, surfaces: &mut Surfaces<S>) {
+    let geometry = &frame.scene.geometry;
+    let normals = hits.gather::<S, 9>(
+        simd,
+        #[inline(always)]
+        |primitive| {
+            let normals = frame.tables.attributes(geometry, primitive).and_then(|a| a.normals);
+            let [a, b, c] = normals.unwrap_or([Vec3::ZERO; 3]);
+            [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z]
+        },
+    );
+    let [u, v, w] = surfaces.weights;
+    let blend = V3::new(normals[0], normals[1], normals[2]).scale(u)
+        + V3::new(normals[3], normals[4], normals[5]).scale(v)
+        + V3::new(normals[6], normals[7], normals[8]).scale(w);
+    let zero = S::f32s::splat(simd, 0.0);
+    let unit = blend.normalize();
+    let flat = surfaces.point.normal;
+    let unit = V3::select(unit.dot(flat).simd_lt(zero), -unit, unit);
+    surfaces.shading_normal = V3::select(blend.dot(blend).simd_gt(zero), unit, flat);
+}
+
+/// Where the primitives of a packet's hits lie.
+struct Places {
+    /// For each lane; that of a hitting lane where there is no hit.
+    slots: [Slot; MOST_LANES],
+    /// The types of those, as numbers.
+    kinds: [u32; MOST_LANES],
+}
+
+impl Places {
+    #[inline(always)]
+    fn new(geometry: &Geometry, hits: &Hits<'_>) -> Self {
+        let slot = geometry.slots[hits.primitives[hits.first()] as usize];
+        let mut places = Self { slots: [slot; MOST_LANES], kinds: [slot.kind as u32; MOST_LANES] };
+        if hits.common.is_none() {
+            for lane in hits.lanes() {
+                let slot = geometry.slots[hits.primitives[lane] as usize];
+                (places.slots[lane], places.kinds[lane]) = (slot, slot.kind as u32);
+            }
         }
+        places
     }
 }
 
-/// Where the primitive of each lane lies; that of a hitting lane where there is no hit.
-#[inline(always)]
-fn slots_of(geometry: &Geometry, hits: &Hits<'_>) -> [Slot; MOST_LANES] {
-    let mut slots = [geometry.slots[hits.primitives[hits.active.trailing_zeros() as usize] as usize]; MOST_LANES];
-    if hits.common.is_none() {
-        for lane in hits.lanes() {
-            slots[lane] = geometry.slots[hits.primitives[lane] as usize];
-        }
-    }
-    slots
-}
+/// Primitives of one packet up to which blending by mask beats gathering.
+const FEW: usize = 4;
 
 /// The lanes of a packet that hit one type of primitive.
 struct Group<'a> {
     geometry: &'a Geometry,
     hits: &'a Hits<'a>,
-    slots: &'a [Slot; MOST_LANES],
-    kind: PrimitiveKind,
+    places: &'a Places,
     /// A lane that hit this type.
     first: usize,
 }
@@ -155,53 +208,70 @@ struct Group<'a> {
 impl Group<'_> {
     /// Of the lanes `among`, those that hit this type.
     #[inline(always)]
-    fn lanes(&self, among: u64) -> u64 {
+    fn lanes<S: Simd>(&self, simd: S, among: u64) -> u64 {
         if self.hits.common.is_some() {
             return among;
         }
-        let mut lanes = 0;
-        for lane in bits(among) {
-            lanes |= u64::from(self.slots[lane].kind == self.kind) << lane;
-        }
-        lanes
+        let kinds = S::u32s::from_slice(simd, &self.places.kinds[..S::f32s::LEN]);
+        among & kinds.simd_eq(S::u32s::splat(simd, self.places.kinds[self.first])).to_bitmask()
     }
 
-    /// The fields of the primitives hit. Lanes that hit another type get those of the first.
+    /// The fields of the primitives that `lanes` hit, all of this type. Other lanes get those of the first.
     #[inline(always)]
-    fn fields<S: Simd, const N: usize>(&self, simd: S, blocks: &[Block<N>]) -> [S::f32s; N] {
-        let first = self.slots[self.first];
+    fn fields<S: Simd, const N: usize>(&self, simd: S, lanes: u64, blocks: &[Block<N>]) -> [S::f32s; N] {
+        let slots = &self.places.slots;
+        let first = slots[self.first];
+        let mut fields: [S::f32s; N] = blocks[first.block as usize].splat(simd, first.place.into());
         if self.hits.common.is_some() {
-            return blocks[first.block as usize].splat(simd, first.place.into());
+            return fields;
         }
-        let lanes = S::f32s::LEN;
+        let primitives = S::u32s::from_slice(simd, self.hits.primitives);
+        let mut left = lanes & !primitives.simd_eq(self.hits.primitives[self.first]).to_bitmask();
+        for _ in 1..FEW {
+            if left == 0 {
+                return fields;
+            }
+            let lane = left.trailing_zeros() as usize;
+            let mask = primitives.simd_eq(self.hits.primitives[lane]);
+            left &= !mask.to_bitmask();
+            let block = &blocks[slots[lane].block as usize];
+            let place = usize::from(slots[lane].place) % BLOCK;
+            for (field, row) in fields.iter_mut().zip(&block.fields) {
+                *field = mask.select(S::f32s::splat(simd, row[place]), *field);
+            }
+        }
+        if left == 0 {
+            return fields;
+        }
         let mut gathered = [[0.0; MOST_LANES]; N];
-        for lane in 0..lanes {
-            let slot = if self.slots[lane].kind == self.kind { self.slots[lane] } else { first };
-            let block = &blocks[slot.block as usize];
-            let place = usize::from(slot.place) % BLOCK;
+        let mask = Mask::<S>::from_bitmask(simd, left);
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize % MOST_LANES;
+            left &= left - 1;
+            let block = &blocks[slots[lane].block as usize];
+            let place = usize::from(slots[lane].place) % BLOCK;
             for (row, field) in gathered.iter_mut().zip(&block.fields) {
                 row[lane] = field[place];
             }
         }
-        let mut fields = [S::f32s::splat(simd, 0.0); N];
         for (field, row) in fields.iter_mut().zip(&gathered) {
-            *field = S::f32s::from_slice(simd, &row[..lanes]);
+            *field = mask.select(S::f32s::from_slice(simd, &row[..S::f32s::LEN]), *field);
         }
         fields
     }
 }
 
 macro_rules! define_surface {
-    ($($kernel:ident $fields:literal $blocks:ident,)+) => {
+    ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
         impl Group<'_> {
-            /// The surfaces of the lanes that hit this type.
+            /// The surfaces of `lanes`, which hit this type.
             #[inline(always)]
             fn surface<S: Simd>(
-                &self, simd: S, origin: V3<S::f32s>, direction: V3<S::f32s>, t: S::f32s,
+                &self, simd: S, lanes: u64, origin: V3<S::f32s>, direction: V3<S::f32s>, t: S::f32s,
             ) -> SurfacePoint<S::f32s> {
-                match self.kind {
+                match self.places.slots[self.first].kind {
                     $(PrimitiveKind::$kernel => {
-                        let fields = self.fields::<S, $fields>(simd, &self.geometry.$blocks);
+                        let fields = self.fields::<S, $fields>(simd, lanes, &self.geometry.$blocks);
                         $kernel::surface(&fields, origin, direction, t)
                     })+
                 }
@@ -211,144 +281,13 @@ macro_rules! define_surface {
 }
 for_each_primitive!(define_surface);
 
-/// Materials of a packet's hits.
-pub(super) struct Materials<S: Simd> {
-    /// The material of each lane; that of a hitting lane where there is no hit.
-    lanes: [u32; MOST_LANES],
-    /// Each material once.
-    distinct: [u32; MOST_LANES],
-    /// Which lanes have it.
-    masks: [Mask<S>; MOST_LANES],
-    /// How many there are.
-    count: usize,
-}
-
-impl<S: Simd> Materials<S> {
-    #[inline(always)]
-    pub fn new(simd: S, frame: &Frame<'_>, hits: &Hits<'_>) -> Self {
-        let ids = &frame.scene.geometry.ids;
-        let objects = &frame.scene.objects;
-        let first = hits.active.trailing_zeros() as usize;
-        let material = objects[ids[hits.primitives[first] as usize].object as usize].material;
-        let mut materials = Self {
-            lanes: [material; MOST_LANES],
-            distinct: [material; MOST_LANES],
-            masks: [Mask::<S>::splat(simd, true); MOST_LANES],
-            count: 1,
-        };
-        if hits.common.is_none() {
-            for lane in hits.lanes() {
-                materials.lanes[lane] = objects[ids[hits.primitives[lane] as usize].object as usize].material;
-            }
-            materials.sort_out(simd);
-        }
-        materials
-    }
-
-    /// Finds which materials there are, and where.
-    #[inline(always)]
-    fn sort_out(&mut self, simd: S) {
-        let lanes = S::u32s::from_slice(simd, &self.lanes[..S::f32s::LEN]);
-        let mut left = (1_u64 << S::f32s::LEN) - 1;
-        self.count = 0;
-        while left != 0 {
-            let material = self.lanes[left.trailing_zeros() as usize];
-            let same = lanes.simd_eq(S::u32s::splat(simd, material)).to_bitmask();
-            self.distinct[self.count] = material;
-            self.masks[self.count] = Mask::<S>::from_bitmask(simd, same);
-            self.count += 1;
-            left &= !same;
-        }
-    }
-
-    /// The material of a lane.
-    #[inline(always)]
-    pub fn of(&self, lane: usize) -> usize {
-        self.lanes[lane] as usize
-    }
-
-    /// Whether any material passes a test.
-    #[inline(always)]
-    pub fn any(&self, mut test: impl FnMut(usize) -> bool) -> bool {
-        for &material in &self.distinct[..self.count] {
-            if test(material as usize) {
-                return true;
-            }
-        }
-        false
-    }
-
-    /// One number of every lane's material.
-    #[inline(always)]
-    pub fn row(&self, simd: S, frame: &Frame<'_>, row: usize) -> S::f32s {
-        debug_assert!(row < ROWS);
-        let table = &frame.tables.materials;
-        let mut value = S::f32s::splat(simd, table[self.distinct[0] as usize].rows[row]);
-        for other in 1..self.count {
-            let number = S::f32s::splat(simd, table[self.distinct[other] as usize].rows[row]);
-            value = self.masks[other].select(number, value);
-        }
-        value
-    }
-
-    /// Three numbers in a row.
-    #[inline(always)]
-    pub fn triple(&self, simd: S, frame: &Frame<'_>, first: Row) -> V3<S::f32s> {
-        let row = first as usize;
-        V3::new(self.row(simd, frame, row), self.row(simd, frame, row + 1), self.row(simd, frame, row + 2))
-    }
-
-    /// Surface colour and emission, textures looked up.
-    #[inline(always)]
-    pub fn colors(
-        &self,
-        simd: S,
-        frame: &Frame<'_>,
-        hits: &Hits<'_>,
-        surfaces: &Surfaces<S>,
-    ) -> (V3<S::f32s>, V3<S::f32s>) {
-        let mut color = self.triple(simd, frame, Row::Color);
-        let mut emission = self.triple(simd, frame, Row::Emission);
-        if frame.plan.textures {
-            for lane in hits.lanes() {
-                let material = &frame.tables.materials[self.of(lane)];
-                if material.color_texture.is_none() && material.emission_texture.is_none() {
-                    continue;
-                }
-                let uv = texture_coordinates(frame, hits.primitives[lane], surfaces, lane);
-                let look_up = |texture: Option<u32>, into: &mut V3<S::f32s>| {
-                    if let Some(texture) = texture {
-                        let found = frame.scene.textures[texture as usize].sample(uv);
-                        (into.x[lane], into.y[lane], into.z[lane]) = found.into();
-                    }
-                };
-                look_up(material.color_texture, &mut color);
-                look_up(material.emission_texture, &mut emission);
-            }
-        }
-        (color, emission)
-    }
-}
-
-/// Texture coordinates of one lane's hit.
-fn texture_coordinates<S: Simd>(frame: &Frame<'_>, primitive: u32, surfaces: &Surfaces<S>, lane: usize) -> Vec2 {
-    let geometry = &frame.scene.geometry;
-    let id = geometry.ids[primitive as usize];
-    let own = geometry.attributes_of(primitive).and_then(|a| a.uvs).map(|uvs| {
-        let [u, v, w] = surfaces.weights.map(|weight| weight[lane]);
-        uvs[0] * u + uvs[1] * v + uvs[2] * w
-    });
-    let (position, normal) = (surfaces.point.position.lane(lane), surfaces.point.normal.lane(lane));
-    frame.scene.objects[id.object as usize].texture_coordinates(id.primitive, position, normal, own)
-}
-
 /// What a crossing of each lane's primitive leaves of the light: transparency times colour. 1 where nothing is crossed.
 #[inline(always)]
 pub(super) fn transmission<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     primitives: &S::u32s,
-    packet: &Packet<S>,
+    rays: &Rays<S::f32s>,
     t: S::f32s,
 ) -> V3<S::f32s> {
     let hits = Hits::new(simd, primitives.as_slice());
@@ -357,13 +296,11 @@ pub(super) fn transmission<S: Simd>(
         return one;
     }
     let materials = Materials::new(simd, frame, &hits);
-    let color = if frame.plan.textures {
-        let surfaces = surfaces(simd, frame, &hits, packet.origin, packet.direction, t);
-        materials.colors(simd, frame, &hits, &surfaces).0
-    } else {
-        materials.triple(simd, frame, Row::Color)
-    };
-    let transparency = one - materials.triple(simd, frame, Row::Opacity);
+    let mut color = materials.triple(simd, Row::Color);
+    if frame.plan.textures && materials.any(|m| m.color_texture.is_some()) {
+        let surfaces = surfaces(simd, frame, &hits, rays.origin, rays.direction, t);
+        materials.look_up(simd, frame, &hits, &surfaces, &mut color, &mut V3::zero(simd));
+    }
     let crossed = Mask::<S>::from_bitmask(simd, hits.active);
-    V3::select(crossed, transparency * color, one)
+    V3::select(crossed, materials.triple(simd, Row::Transparency) * color, one)
 }

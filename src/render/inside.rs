@@ -14,7 +14,8 @@ pub fn bodies_around(scene: &Scene, tables: &Tables, eye: Vec3, bodies: &mut Vec
         }
     }
     let size = |&object: &u32| scene.objects[object as usize].bounds.size().max_element();
-    bodies.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    // The stable sort would need memory.
+    bodies.sort_unstable_by(|a, b| size(b).total_cmp(&size(a)).then(a.cmp(b)));
 }
 
 /// Whether a closed body holds a point, by how often a ray from it leaves the body more than it enters.

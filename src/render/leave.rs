@@ -3,7 +3,6 @@
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use glam::Vec3;
 
 /// Rays start this far off the surface that they leave, as a share of the largest coordinate that made the hit point:
 /// sixteen units in the last place, so that it holds at any scale of a scene.
@@ -42,14 +41,6 @@ pub fn start<S: Simd>(
     position + direction.scale(ahead) + normal.scale(lacking)
 }
 
-/// [`start`] of a single ray.
-pub fn start_one(position: Vec3, normal: Vec3, margin: f32, direction: Vec3) -> Vec3 {
-    let cosine = normal.dot(direction);
-    let ahead = margin / cosine.max(FLATTEST);
-    let lacking = (margin - ahead * cosine).max(0.0);
-    position + direction * ahead + normal * lacking
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -58,6 +49,7 @@ mod tests {
         ClosestHit, Geometry, NO_PRIMITIVE, Packet, Part, PrimitiveId, PrimitiveKind, Search, Shape, Stack,
     };
     use crate::math::{SimdToken, dispatch};
+    use glam::Vec3;
 
     /// SplitMix64 (Steele, Lea and Flood, OOPSLA 2014).
     struct Random(u64);
@@ -105,8 +97,14 @@ mod tests {
         (visitor.primitive[0] != NO_PRIMITIVE).then(|| visitor.t[0])
     }
 
+    /// [`start`] of a single ray.
+    fn start_one<S: Simd>(simd: S, position: Vec3, normal: Vec3, margin: f32, direction: Vec3) -> Vec3 {
+        let [position, normal, direction] = [position, normal, direction].map(|v| V3::splat(simd, v));
+        start::<S>(position, normal, S::f32s::splat(simd, margin), direction).lane(0)
+    }
+
     macro_rules! define_surface {
-        ($($kernel:ident $fields:literal $blocks:ident,)+) => {
+        ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
             /// Position, normal and margin at a hit of the only primitive.
             fn surface<S: Simd>(simd: S, geometry: &Geometry, origin: Vec3, direction: Vec3, t: f32) -> (Vec3, Vec3, f32) {
                 let (origin, direction) = (V3::splat(simd, origin), V3::splat(simd, direction));
@@ -154,7 +152,7 @@ mod tests {
                 let across = (off - facing * off.dot(facing)).normalize();
                 let away = (across + facing * flatness).normalize();
                 left += 1;
-                let start = start_one(position, facing, margin, away);
+                let start = dispatch!(token, simd => start_one(simd, position, facing, margin, away));
                 if let Some(t) = dispatch!(token, simd => closest(simd, &geometry, start, away)) {
                     met.push(format!("{shape:?} from {origin} along {direction}, then {away}, at {t}"));
                 }

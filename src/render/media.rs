@@ -15,6 +15,10 @@ struct Entry {
     before: MediaList,
 }
 
+/// Where an arena ended.
+#[derive(Clone, Copy, Debug)]
+pub struct MediaMark(usize);
+
 /// The arena of lists of one tile.
 #[derive(Debug, Default)]
 pub struct Media {
@@ -26,6 +30,22 @@ impl Media {
     pub fn restart(&mut self, around_eye: &[u32]) -> MediaList {
         self.entries.clear();
         around_eye.iter().fold(OUTSIDE, |list, &object| self.enter(list, object))
+    }
+
+    /// Bodies that there is memory for.
+    #[cfg(test)]
+    pub fn room(&self) -> usize {
+        self.entries.capacity()
+    }
+
+    /// Where the arena ends now.
+    pub fn mark(&self) -> MediaMark {
+        MediaMark(self.entries.len())
+    }
+
+    /// Forgets all lists made since `mark`.
+    pub fn truncate(&mut self, mark: MediaMark) {
+        self.entries.truncate(mark.0);
     }
 
     /// The list after entering a body.

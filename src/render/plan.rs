@@ -1,10 +1,10 @@
 //! The cheapest pipeline that draws a scene: what of the tracer a frame runs, and why.
 
-use super::tables::Tables;
+use super::tables::{FlatMaterial, Tables};
 use crate::geometry::PrimitiveKind;
 use crate::scene::Scene;
-use crate::scene::material::ColorSource;
 use crate::settings::{Settings, SphereCache};
+use glam::Vec3;
 
 /// What a frame runs. Made once a frame; nothing below asks settings or scene again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,10 +23,16 @@ pub struct Plan {
     pub refractions: bool,
     /// Keep track of the bodies that rays are inside of.
     pub media: bool,
+    /// Some body absorbs light.
+    pub absorption: bool,
     /// Look up textures.
     pub textures: bool,
     /// Interpolate normals or texture coordinates of triangles.
     pub vertex_attributes: bool,
+    /// Some surface has a Blinn-Phong highlight.
+    pub highlights: bool,
+    /// Some surface gives off light.
+    pub emission: bool,
     /// Some surface is metallic-roughness.
     pub metallic_roughness: bool,
     /// Most rays on a path.
@@ -40,8 +46,9 @@ impl Plan {
     }
 
     pub(super) fn with_tables(scene: &Scene, settings: &Settings, tables: &Tables) -> Self {
-        let has = |kind| scene.geometry.count(kind) > 0;
-        let textured = |source: &ColorSource| matches!(source, ColorSource::Texture(_));
+        let has = |kind| scene.geometry.blocks_of(kind) > 0;
+        let absorbs =
+            |object: u32| scene.materials[scene.objects[object as usize].material as usize].absorption != Vec3::ZERO;
         let depth = settings.depth.unwrap_or(scene.render.max_depth);
         let refractions = settings.refractions && depth > 1 && !tables.opaque.is_empty();
         let reflections = settings.reflections && depth > 1 && tables.materials.iter().any(|m| m.secondary);
@@ -54,10 +61,23 @@ impl Plan {
             reflections,
             refractions,
             media: !tables.transparent_bodies.is_empty(),
-            textures: scene.materials.iter().any(|m| textured(&m.color) || textured(&m.emission)),
+            absorption: tables.transparent_bodies.iter().any(|&object| absorbs(object)),
+            textures: tables.materials.iter().any(FlatMaterial::is_textured),
             vertex_attributes: !scene.geometry.attributes.is_empty(),
+            highlights: tables.materials.iter().any(|m| m.shiny),
+            emission: tables.materials.iter().any(|m| m.emissive),
             metallic_roughness: tables.materials.iter().any(|m| m.metallic_roughness),
             depth,
+        }
+    }
+
+    /// The reflection models that run.
+    fn models(&self) -> &'static str {
+        match (self.highlights, self.metallic_roughness) {
+            (true, true) => "Lambert, Blinn-Phong and metallic-roughness",
+            (true, false) => "Lambert and Blinn-Phong only",
+            (false, true) => "Lambert and metallic-roughness: nothing has a Blinn-Phong highlight",
+            (false, false) => "Lambert only: nothing has a highlight",
         }
     }
 
@@ -106,6 +126,11 @@ impl Plan {
                 "media: off, no transparent body bends light",
             ),
             say(
+                self.absorption,
+                "absorption: on, some body takes light along the way".to_owned(),
+                "absorption: off, every body is clear",
+            ),
+            say(
                 self.textures,
                 format!("textures: on, {} in the scene", scene.textures.len()),
                 "textures: off, every colour is constant: no texture coordinates",
@@ -116,10 +141,11 @@ impl Plan {
                 "vertex data: off, every normal follows from the shape",
             ),
             say(
-                self.metallic_roughness,
-                "shading: Lambert, Blinn-Phong and metallic-roughness".to_owned(),
-                "shading: Lambert and Blinn-Phong only",
+                self.emission,
+                "emission: on, some material gives off light".to_owned(),
+                "emission: off, nothing gives off light",
             ),
+            format!("shading: {}", self.models()),
         ]
     }
 }

@@ -10,6 +10,29 @@ use std::ops::Range;
 /// The widest packet: queues keep this much room beyond their length, so that every packet is a full load.
 pub const MOST_LANES: usize = 16;
 
+/// Lane mask of native width.
+type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
+
+/// Stores the masked lanes, side by side, from `at` on; what follows them is overwritten.
+#[inline(always)]
+fn put<S: Simd>(column: &mut [f32], at: usize, mask: Mask<S>, values: S::f32s) {
+    let packed = if mask.all_true() { values } else { values.compress(mask) };
+    packed.store_slice(&mut column[at..at + S::f32s::LEN]);
+}
+
+/// [`put`] for numbers.
+#[inline(always)]
+fn put_numbers<S: Simd>(column: &mut [u32], at: usize, mask: Mask<S>, values: S::u32s) {
+    let packed = if mask.all_true() { values } else { values.compress(mask) };
+    packed.store_slice(&mut column[at..at + S::f32s::LEN]);
+}
+
+/// How many lanes are set.
+#[inline(always)]
+fn count<S: Simd>(mask: Mask<S>) -> usize {
+    mask.to_bitmask().count_ones() as usize
+}
+
 /// Three columns of a vector.
 #[derive(Clone, Debug, Default)]
 pub struct Columns {
@@ -19,10 +42,28 @@ pub struct Columns {
 }
 
 impl Columns {
-    fn resize(&mut self, len: usize) {
-        for column in [&mut self.x, &mut self.y, &mut self.z] {
+    /// Makes each column `len` long; new places hold 0.
+    pub fn resize(&mut self, len: usize) {
+        for column in self.columns_mut() {
             column.resize(len, 0.0);
         }
+    }
+
+    /// Empties each column; its memory stays.
+    pub fn clear(&mut self) {
+        for column in self.columns_mut() {
+            column.clear();
+        }
+    }
+
+    /// The three columns.
+    pub fn columns(&self) -> [&Vec<f32>; 3] {
+        [&self.x, &self.y, &self.z]
+    }
+
+    /// The three columns.
+    pub fn columns_mut(&mut self) -> [&mut Vec<f32>; 3] {
+        [&mut self.x, &mut self.y, &mut self.z]
     }
 
     fn fill(&mut self, places: Range<usize>, v: Vec3) {
@@ -31,10 +72,12 @@ impl Columns {
         self.z[places].fill(v.z);
     }
 
+    #[inline(always)]
     pub fn set(&mut self, at: usize, v: Vec3) {
         (self.x[at], self.y[at], self.z[at]) = (v.x, v.y, v.z);
     }
 
+    #[inline(always)]
     pub fn get(&self, at: usize) -> Vec3 {
         Vec3::new(self.x[at], self.y[at], self.z[at])
     }
@@ -46,6 +89,14 @@ impl Columns {
         v.x.store_slice(&mut self.x[range.clone()]);
         v.y.store_slice(&mut self.y[range.clone()]);
         v.z.store_slice(&mut self.z[range]);
+    }
+
+    /// Stores the masked lanes, side by side, from `at` on; what follows them is overwritten.
+    #[inline(always)]
+    fn put<S: Simd>(&mut self, at: usize, mask: Mask<S>, v: V3<S::f32s>) {
+        put::<S>(&mut self.x, at, mask, v.x);
+        put::<S>(&mut self.y, at, mask, v.y);
+        put::<S>(&mut self.z, at, mask, v.z);
     }
 
     /// The lanes starting at `at`.
@@ -87,9 +138,9 @@ impl RayQueue {
 
     /// Makes room for `rays` in all.
     pub fn reserve(&mut self, rays: usize) {
+        // Exactly that much: columns whose size is a power of two would share the same sets of the cache.
         let room = rays + MOST_LANES;
         if self.t.len() < room {
-            let room = room.next_power_of_two();
             for columns in [&mut self.origin, &mut self.direction, &mut self.weight] {
                 columns.resize(room);
             }
@@ -111,6 +162,26 @@ impl RayQueue {
         self.sample[at] = sample;
         self.media[at] = media;
         self.len += 1;
+    }
+
+    /// Appends the masked lanes, in order; there must be room for all lanes.
+    #[inline(always)]
+    pub fn push_lanes<S: Simd>(
+        &mut self,
+        mask: Mask<S>,
+        origin: V3<S::f32s>,
+        direction: V3<S::f32s>,
+        weight: V3<S::f32s>,
+        sample: S::u32s,
+        media: S::u32s,
+    ) {
+        let at = self.len;
+        self.origin.put::<S>(at, mask, origin);
+        self.direction.put::<S>(at, mask, direction);
+        self.weight.put::<S>(at, mask, weight);
+        put_numbers::<S>(&mut self.sample, at, mask, sample);
+        put_numbers::<S>(&mut self.media, at, mask, media);
+        self.len += count::<S>(mask);
     }
 
     /// Appends `count` rays of full weight from one origin, to be aimed; returns the first one's place.
@@ -194,6 +265,9 @@ impl RayQueue {
     }
 }
 
+/// Shaded rays whose shadow rays follow each other in one of [`ShadowQueue::runs`].
+pub const RUN: usize = 256;
+
 /// Shadow rays towards one light.
 #[derive(Clone, Debug, Default)]
 pub struct ShadowQueue {
@@ -205,6 +279,11 @@ pub struct ShadowQueue {
     /// Distance of the light.
     pub distance: Vec<f32>,
     pub sample: Vec<u32>,
+    /// The primitive that the ray leaves, where it cannot come back to it; else [`NO_PRIMITIVE`].
+    pub source: Vec<u32>,
+    /// How many shadow rays there were when each [`RUN`] of shaded rays began, and at the end: the rays
+    /// `runs[k]..runs[k + 1]` start where the rays of run k hit, close together.
+    pub runs: Vec<u32>,
     len: usize,
 }
 
@@ -217,55 +296,47 @@ impl ShadowQueue {
     /// Empties the queue; its memory stays.
     pub fn clear(&mut self) {
         self.len = 0;
+        self.runs.clear();
+    }
+
+    /// Begins the next run, or ends the last.
+    pub fn mark_run(&mut self) {
+        self.runs.push(self.len as u32);
     }
 
     /// Makes room for `rays` more, and lanes beyond.
     pub fn reserve(&mut self, rays: usize) {
         let room = self.len + rays + MOST_LANES;
         if self.distance.len() < room {
-            let room = room.next_power_of_two();
             for columns in [&mut self.origin, &mut self.direction, &mut self.gain] {
                 columns.resize(room);
             }
             self.distance.resize(room, 0.0);
             self.sample.resize(room, 0);
+            self.source.resize(room, NO_PRIMITIVE);
         }
     }
 
-    /// Appends the masked lanes, in order.
+    /// Appends the masked lanes, in order; there must be room for all lanes.
     #[inline(always)]
     pub fn push_lanes<S: Simd>(
         &mut self,
-        mask: <S::f32s as SimdBase<S>>::Mask,
+        mask: Mask<S>,
         origin: V3<S::f32s>,
         direction: V3<S::f32s>,
         distance: S::f32s,
         gain: V3<S::f32s>,
-        samples: &[u32],
+        sample: S::u32s,
+        source: S::u32s,
     ) {
-        let lanes = S::f32s::LEN;
-        self.reserve(lanes);
-        let at = self.len..self.len + lanes;
-        for (column, values) in [
-            (&mut self.origin.x, origin.x),
-            (&mut self.origin.y, origin.y),
-            (&mut self.origin.z, origin.z),
-            (&mut self.direction.x, direction.x),
-            (&mut self.direction.y, direction.y),
-            (&mut self.direction.z, direction.z),
-            (&mut self.gain.x, gain.x),
-            (&mut self.gain.y, gain.y),
-            (&mut self.gain.z, gain.z),
-            (&mut self.distance, distance),
-        ] {
-            values.compress(mask).store_slice(&mut column[at.clone()]);
-        }
-        let mut bits = mask.to_bitmask();
-        while bits != 0 {
-            self.sample[self.len] = samples[bits.trailing_zeros() as usize];
-            self.len += 1;
-            bits &= bits - 1;
-        }
+        let at = self.len;
+        self.origin.put::<S>(at, mask, origin);
+        self.direction.put::<S>(at, mask, direction);
+        self.gain.put::<S>(at, mask, gain);
+        put::<S>(&mut self.distance, at, mask, distance);
+        put_numbers::<S>(&mut self.sample, at, mask, sample);
+        put_numbers::<S>(&mut self.source, at, mask, source);
+        self.len += count::<S>(mask);
     }
 
     /// Repeats the last ray beyond the end, with no distance to go.

@@ -1,6 +1,10 @@
 //! From linear light to bytes: exposure, tone curve, sRGB.
 
+use super::queue::MOST_LANES;
+use crate::math::V3;
 use crate::settings::{Settings, ToneMap};
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 use std::sync::LazyLock;
 
 /// Turns linear colours into sRGB bytes.
@@ -17,84 +21,127 @@ impl Encoder {
         Self { table: &SRGB, gain: libm::exp2f(settings.exposure), tone_map: settings.tone_map }
     }
 
-    /// Encodes a linear colour.
-    #[inline]
-    pub fn encode(&self, color: [f32; 3]) -> [u8; 3] {
-        let exposed = if self.gain == 1.0 { color } else { color.map(|c| c * self.gain) };
-        match self.tone_map {
+    /// Encodes linear colours as RGBA.
+    #[inline(always)]
+    pub fn encode<S: Simd>(&self, simd: S, color: V3<S::f32s>) -> [[u8; 4]; MOST_LANES] {
+        let exposed = if self.gain == 1.0 { color } else { color.scale(S::f32s::splat(simd, self.gain)) };
+        let mapped = match self.tone_map {
             ToneMap::None => exposed,
-            ToneMap::Neutral => neutral(exposed),
+            ToneMap::Neutral => neutral(simd, exposed),
+        };
+        let (mut bits, mut buckets) = ([[0; MOST_LANES]; 3], [[0; MOST_LANES]; 3]);
+        for (channel, lanes) in [mapped.x, mapped.y, mapped.z].into_iter().enumerate() {
+            let clamped = SrgbTable::clamp(simd, lanes);
+            clamped.store_slice(&mut bits[channel][..S::f32s::LEN]);
+            SrgbTable::buckets::<S>(clamped).store_slice(&mut buckets[channel][..S::f32s::LEN]);
         }
-        .map(
-            #[inline(always)]
-            |linear| self.table.encode(linear),
-        )
+        let mut pixels = [[0; 4]; MOST_LANES];
+        for (lane, pixel) in pixels.iter_mut().enumerate().take(S::f32s::LEN) {
+            let mut rgba = u32::from_le_bytes([0, 0, 0, 255]);
+            for channel in 0..3 {
+                rgba |= self.table.encode(buckets[channel][lane], bits[channel][lane]) << (8 * channel);
+            }
+            *pixel = rgba.to_le_bytes();
+        }
+        pixels
     }
 }
 
 /// Khronos PBR Neutral tone mapper (specification, 2024): base colours pass unchanged, highlights are compressed.
-fn neutral([r, g, b]: [f32; 3]) -> [f32; 3] {
+#[inline(always)]
+fn neutral<S: Simd>(simd: S, color: V3<S::f32s>) -> V3<S::f32s> {
     const START: f32 = 0.8 - 0.04;
     const DESATURATION: f32 = 0.15;
-    let least = r.min(g).min(b);
-    let offset = if least < 0.08 { least - 6.25 * least * least } else { 0.04 };
-    let shifted = [r - offset, g - offset, b - offset];
-    let peak = shifted[0].max(shifted[1]).max(shifted[2]);
-    if peak < START {
+    const ROOM: f32 = 1.0 - START;
+    let one = S::f32s::splat(simd, 1.0);
+    let least = color.x.min(color.y).min(color.z);
+    let dark = least.simd_lt(S::f32s::splat(simd, 0.08));
+    let offset = dark.select(least - least * least * 6.25, S::f32s::splat(simd, 0.04));
+    let shifted = color - V3::all(offset);
+    let peak = shifted.x.max(shifted.y).max(shifted.z);
+    let bright = peak.simd_ge(S::f32s::splat(simd, START));
+    if !bright.any_true() {
         return shifted;
     }
-    let room = 1.0 - START;
-    let new_peak = 1.0 - room * room / (peak + room - START);
-    let share = 1.0 - 1.0 / (DESATURATION * (peak - new_peak) + 1.0);
-    shifted.map(|c| c * (new_peak / peak) * (1.0 - share) + new_peak * share)
+    let new_peak = one - S::f32s::splat(simd, ROOM * ROOM) / (peak + (ROOM - START));
+    let share = one - one / ((peak - new_peak) * DESATURATION + one);
+    let compressed = shifted.scale(new_peak / peak).scale(one - share) + V3::all(new_peak * share);
+    V3::select(bright, compressed, shifted)
 }
 
-/// Buckets of the first guess of [`SrgbTable::encode`]. Bytes change at most every 1 / (12.92 * 255) = 1 / 3295, so
-/// that a bucket holds at most one change.
-const BUCKETS: usize = 4096;
-
-/// For each byte the least linear value that encodes to it, and for each bucket of linear values its least byte.
-struct SrgbTable {
-    least_linear: [f32; 257],
-    first_guess: [u8; BUCKETS],
-}
+/// For each bucket of linear values its least byte, and the linear value at which the next byte starts.
+///
+/// Buckets are as wide as 2^-7 of their octave: then none holds more than one change (after Giesen, "Float->sRGB8
+/// conversions", 2012). Value and byte lie in one number, so that one addition compares with the one and carries into
+/// the other: the upper half is the byte, the lower one 2^32 less the bits of the next byte's least value.
+struct SrgbTable([u64; Self::ROOM]);
 
 static SRGB: LazyLock<SrgbTable> = LazyLock::new(|| {
-    let least_linear = std::array::from_fn(|byte| match byte {
-        0 => 0.0,
-        // Nothing is brighter than the last byte, not even infinity.
-        256 => f32::NAN,
-        _ => {
-            let encoded = (byte as f64 - 0.5) / 255.0;
-            let linear = if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) };
-            linear as f32
-        }
-    });
-    let mut byte = 0_usize;
-    let first_guess = std::array::from_fn(|bucket| {
-        let linear = bucket as f32 / BUCKETS as f32;
-        while least_linear[byte + 1] <= linear {
+    let mut byte = 0;
+    SrgbTable(std::array::from_fn(|bucket| {
+        let start = SrgbTable::LEAST + ((bucket as u32) << SrgbTable::SHIFT);
+        while least_linear(byte + 1).to_bits() <= start {
             byte += 1;
         }
-        byte as u8
-    });
-    SrgbTable { least_linear, first_guess }
+        (u64::from(byte) << 32) + ((1 << 32) - u64::from(least_linear(byte + 1).to_bits()))
+    }))
 });
 
+/// The least linear value that encodes to a byte; infinity where there is no such byte.
+fn least_linear(byte: u32) -> f32 {
+    if byte > 255 {
+        return f32::INFINITY;
+    }
+    let encoded = (f64::from(byte) - 0.5) / 255.0;
+    let linear = if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) };
+    linear as f32
+}
+
 impl SrgbTable {
-    /// Clamps to [0, 1] and encodes to the nearest sRGB byte (IEC 61966-2-1). NaN becomes 0.
+    /// Bits of 2^-13: below it everything is 0.
+    const LEAST: u32 = 0x3900_0000;
+    /// How far the bits of a value are shifted to leave its bucket.
+    const SHIFT: u32 = 16;
+    /// Buckets, a power of two: 13 octaves of 128, and 1.
+    const ROOM: usize = 2048;
+
+    /// The bits of linear values, clamped to what the table knows. NaN becomes the least.
     #[inline(always)]
-    fn encode(&self, linear: f32) -> u8 {
-        // A float to integer cast saturates, and takes NaN to 0.
-        let bucket = ((linear * BUCKETS as f32) as usize).min(BUCKETS - 1);
-        let byte = self.first_guess[bucket];
-        byte + u8::from(linear >= self.least_linear[usize::from(byte) + 1])
+    fn clamp<S: Simd>(simd: S, linear: S::f32s) -> S::u32s {
+        let (least, one) = (S::f32s::splat(simd, f32::from_bits(Self::LEAST)), S::f32s::splat(simd, 1.0));
+        let linear = linear.simd_gt(least).select(linear, least);
+        linear.simd_lt(one).select(linear, one).bitcast()
+    }
+
+    /// The buckets of clamped values.
+    #[inline(always)]
+    fn buckets<S: Simd>(bits: S::u32s) -> S::u32s {
+        (bits - Self::LEAST) >> Self::SHIFT
+    }
+
+    /// Encodes the bits of a clamped linear value to the nearest sRGB byte (IEC 61966-2-1).
+    #[inline(always)]
+    fn encode(&self, bucket: u32, bits: u32) -> u32 {
+        ((self.0[bucket as usize % Self::ROOM] + u64::from(bits)) >> 32) as u32
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::{SimdToken, dispatch};
+
+    fn encode_lanes<S: Simd>(simd: S, settings: &Settings, color: [f32; 3]) -> [u8; 4] {
+        Encoder::new(settings).encode(simd, V3::splat(simd, color.into()))[S::f32s::LEN - 1]
+    }
+
+    fn encode(settings: &Settings, color: [f32; 3]) -> [u8; 4] {
+        dispatch!(SimdToken::best(), simd => encode_lanes(simd, settings, color))
+    }
+
+    fn byte(linear: f32) -> u8 {
+        encode(&Settings::default(), [linear; 3])[1]
+    }
 
     #[test]
     fn bytes_are_the_nearest_ones() {
@@ -103,17 +150,27 @@ mod tests {
             let exact = f64::from(linear);
             let encoded =
                 if exact <= 0.003_130_8 { exact * 12.92 } else { 1.055 * exact.powf(1.0 / 2.4) - 0.055 } * 255.0;
-            let byte = f64::from(SRGB.encode(linear));
+            let byte = f64::from(byte(linear));
             assert!((byte - encoded).abs() < 0.5001, "{linear}: {byte} for {encoded}");
         }
-        assert_eq!([-1.0, f32::NAN, 0.0, 2.0, f32::INFINITY].map(|linear| SRGB.encode(linear)), [0, 0, 0, 255, 255]);
+        assert_eq!([-1.0, f32::NAN, 0.0, 1e-30, 2.0, f32::INFINITY].map(byte), [0, 0, 0, 0, 255, 255]);
+    }
+
+    #[test]
+    fn bytes_change_at_their_least_values() {
+        for next in 1..=255 {
+            let least = least_linear(next);
+            assert_eq!(u32::from(byte(least)), next);
+            assert_eq!(u32::from(byte(least.next_down())), next - 1);
+        }
     }
 
     #[test]
     fn neutral_keeps_base_colours_and_compresses_highlights() {
-        let base = neutral([0.5, 0.3, 0.2]);
-        assert!((base[0] - 0.46).abs() < 1e-6 && (base[2] - 0.16).abs() < 1e-6);
-        let bright = neutral([20.0, 10.0, 5.0]);
-        assert!(bright.iter().all(|c| (0.0..=1.0).contains(c)) && bright[0] > 0.95);
+        let settings = Settings { tone_map: ToneMap::Neutral, ..Settings::default() };
+        let base = encode(&settings, [0.5, 0.3, 0.2]);
+        assert_eq!(base, encode(&Settings::default(), [0.46, 0.26, 0.16]));
+        let bright = encode(&settings, [20.0, 10.0, 5.0]);
+        assert!(bright[0] > 240, "{bright:?}");
     }
 }

@@ -1,157 +1,315 @@
-//! The rays that follow from a hit: mirrored, and refracted by Snell's law with exact Fresnel terms.
+//! The rays that follow from hits: mirrored, and refracted by Snell's law with exact Fresnel terms.
 
 use super::frame::Frame;
+use super::gather::{Hits, bits};
 use super::leave;
-use super::media::{Media, MediaList};
-use super::queue::RayQueue;
+use super::materials::Materials;
+use super::media::{Media, MediaList, OUTSIDE};
+use super::queue::{MOST_LANES, RayQueue};
 use super::stats::RayCounts;
-use crate::scene::Material;
-use crate::scene::material::Model;
-use glam::Vec3;
+use super::tables::Row;
+use crate::math::V3;
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 
-/// A ray at the surface that it hit.
-#[derive(Clone, Copy, Debug)]
-pub struct Incident {
-    pub direction: Vec3,
-    pub position: Vec3,
+/// Lane mask of native width.
+type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
+
+/// A packet of rays at the surfaces that they hit.
+pub(super) struct Incident<S: Simd> {
+    /// The lanes whose surfaces mirror or refract.
+    pub spawning: Mask<S>,
+    pub direction: V3<S::f32s>,
+    pub position: V3<S::f32s>,
     /// Unit geometric normal on the side where the ray came from.
-    pub facing: Vec3,
+    pub facing: V3<S::f32s>,
     /// How far off the surface rays start.
-    pub margin: f32,
+    pub margin: S::f32s,
     /// Unit shading normal on that side.
-    pub normal: Vec3,
-    /// The ray came from outside of the object.
-    pub entering: bool,
-    pub object: u32,
+    pub normal: V3<S::f32s>,
+    /// The ray came from inside of the object.
+    pub from_behind: Mask<S>,
     /// Surface colour.
-    pub color: Vec3,
-    pub weight: Vec3,
-    pub sample: u32,
-    pub media: MediaList,
+    pub color: V3<S::f32s>,
+    pub weight: V3<S::f32s>,
+    pub samples: S::u32s,
+    pub media: S::u32s,
 }
 
 /// What share of the light is mirrored and refracted, and where to.
-struct Split {
-    reflected: Vec3,
-    refracted: Vec3,
+struct Split<S: Simd> {
+    reflected: V3<S::f32s>,
+    refracted: V3<S::f32s>,
     /// Direction of the refracted ray; meaningless where its share is 0.
-    inward: Vec3,
+    inward: V3<S::f32s>,
 }
 
-/// Queues the mirrored ray, then the refracted one, each if it is wanted and weighs enough.
-pub(super) fn follow(
+/// The transparent objects of a packet's hits.
+struct Transparent {
+    /// Bit set of the lanes with one.
+    lanes: u64,
+    /// Of these, the ones that bound a body; light does not bend at thin ones.
+    bodies: u64,
+    /// The object of each of these lanes.
+    objects: [u32; MOST_LANES],
+}
+
+/// Queues mirrored and refracted rays, each if it is wanted and weighs enough.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "parts of the worker and of the packet, borrowed apart")]
+pub(super) fn follow<S: Simd>(
+    simd: S,
     frame: &Frame<'_>,
-    incident: &Incident,
+    hits: &Hits<'_>,
+    materials: &Materials<'_, S>,
+    incident: &Incident<S>,
     media: &mut Media,
-    rays: &mut RayQueue,
+    [mirrored, refracted]: [&mut RayQueue; 2],
     counts: &mut RayCounts,
 ) {
-    let object = &frame.scene.objects[incident.object as usize];
-    let material = &frame.scene.materials[object.material as usize];
     // With a shading normal that leans away, the ray may graze it from behind.
     let cosine = (-incident.direction.dot(incident.normal)).max(0.0);
-    let split = if material.is_transparent() {
-        let eta = relative_index(frame, incident, material, object.body, media);
-        refract(material, incident, cosine, eta, object.body)
-    } else {
-        Split { reflected: mirror_share(material, incident.color, cosine), refracted: Vec3::ZERO, inward: Vec3::ZERO }
+    let transparent = Transparent::new(simd, frame, hits, materials, incident.spawning.to_bitmask());
+    let mut split = Split::<S> {
+        reflected: mirror_share(simd, frame, materials, incident.color, cosine),
+        refracted: V3::zero(simd),
+        inward: incident.direction,
     };
-
-    let mirrored = incident.weight * split.reflected;
-    if frame.plan.reflections && is_heavy(mirrored, frame.settings.min_weight) {
-        let direction = normalize(incident.direction + incident.normal * (2.0 * cosine));
-        let start = leave::start_one(incident.position, incident.facing, incident.margin, direction);
-        rays.push(start, direction, mirrored, incident.sample, incident.media);
-        counts.reflection += 1;
+    if transparent.lanes != 0 {
+        let index = outside_index(simd, frame, incident, &transparent, media);
+        let through = refract(simd, materials, incident, cosine, index, transparent.bodies);
+        let lanes = Mask::<S>::from_bitmask(simd, transparent.lanes);
+        split.reflected = V3::select(lanes, through.reflected, split.reflected);
+        split.refracted = V3::select(lanes, through.refracted, split.refracted);
+        split.inward = through.inward;
     }
-    let passed = incident.weight * (split.refracted * incident.color);
-    if frame.plan.refractions && is_heavy(passed, frame.settings.min_weight) {
-        let inside = match (frame.plan.media && object.body, incident.entering) {
-            (false, _) => incident.media,
-            (true, true) => media.enter(incident.media, incident.object),
-            (true, false) => media.leave(incident.media, incident.object),
-        };
-        let start = leave::start_one(incident.position, -incident.facing, incident.margin, split.inward);
-        rays.push(start, split.inward, passed, incident.sample, inside);
-        counts.refraction += 1;
+
+    if frame.plan.reflections {
+        let weight = incident.weight * split.reflected;
+        let heavy = incident.spawning & heavy(simd, weight, frame.settings.min_weight);
+        if heavy.any_true() {
+            let direction = hold_unit::<S>(incident.direction + incident.normal.scale(cosine * 2.0));
+            let start = leave::start::<S>(incident.position, incident.facing, incident.margin, direction);
+            mirrored.push_lanes::<S>(heavy, start, direction, weight, incident.samples, incident.media);
+            counts.reflection += u64::from(heavy.to_bitmask().count_ones());
+        }
     }
-}
-
-/// Whether a ray is worth tracing: rays without weight never are.
-fn is_heavy(weight: Vec3, min_weight: f32) -> bool {
-    let largest = weight.max_element();
-    largest > 0.0 && largest >= min_weight
-}
-
-/// Index of refraction on the side where the ray comes from, divided by that on the other side.
-fn relative_index(frame: &Frame<'_>, incident: &Incident, material: &Material, body: bool, media: &Media) -> f32 {
-    let around = media.around(incident.media, incident.object);
-    let outside =
-        around.map_or(1.0, |object| frame.scene.materials[frame.scene.objects[object as usize].material as usize].ior);
-    if incident.entering || !body { outside / material.ior } else { material.ior / outside }
-}
-
-/// Shares and direction at a transparent surface. Thin things do not bend the ray.
-fn refract(material: &Material, incident: &Incident, cosine: f32, eta: f32, bends: bool) -> Split {
-    let passing = 1.0 - eta * eta * (1.0 - cosine * cosine);
-    if passing < 0.0 && bends {
-        let reflected = material.reflectivity + material.transparency;
-        return Split { reflected, refracted: Vec3::ZERO, inward: Vec3::ZERO };
-    }
-    let cosine_inward = passing.max(0.0).sqrt();
-    let fresnel = if material.fresnel { dielectric_fresnel(cosine, cosine_inward, eta) } else { 0.0 };
-    let inward = if bends {
-        normalize(incident.direction * eta + incident.normal * (eta * cosine - cosine_inward))
-    } else {
-        incident.direction
-    };
-    Split {
-        reflected: material.reflectivity + material.transparency * fresnel,
-        refracted: material.transparency * (1.0 - fresnel),
-        inward,
-    }
-}
-
-/// Exact reflectance of unpolarised light between dielectrics; `eta` is the index in front divided by that behind.
-fn dielectric_fresnel(cosine_in: f32, cosine_out: f32, eta: f32) -> f32 {
-    if cosine_in + cosine_out == 0.0 {
-        // Along a surface with the same index on both sides: there is nothing to reflect from.
-        return 0.0;
-    }
-    let across = (eta * cosine_in - cosine_out) / (eta * cosine_in + cosine_out);
-    let along = (cosine_in - eta * cosine_out) / (cosine_in + eta * cosine_out);
-    (across * across + along * along) * 0.5
-}
-
-/// What an opaque surface mirrors: its reflectivity, or Schlick's term for metallic-roughness.
-fn mirror_share(material: &Material, color: Vec3, cosine: f32) -> Vec3 {
-    match material.model {
-        Model::Phong { .. } => material.reflectivity,
-        Model::MetallicRoughness { metallic, .. } => {
-            let f0 = Vec3::splat(0.04 * (1.0 - metallic)) + color * metallic;
-            let x = 1.0 - cosine;
-            let x2 = x * x;
-            f0 + (Vec3::ONE - f0) * (x2 * x2 * x)
+    if frame.plan.refractions && transparent.lanes != 0 {
+        let weight = incident.weight * (split.refracted * incident.color);
+        let heavy = incident.spawning & heavy(simd, weight, frame.settings.min_weight);
+        if heavy.any_true() {
+            let crossing = heavy.to_bitmask() & transparent.bodies;
+            let inside = if frame.plan.media && crossing != 0 {
+                cross(simd, incident, &transparent.objects, crossing, media)
+            } else {
+                incident.media
+            };
+            let start = leave::start::<S>(incident.position, -incident.facing, incident.margin, split.inward);
+            refracted.push_lanes::<S>(heavy, start, split.inward, weight, incident.samples, inside);
+            counts.refraction += u64::from(heavy.to_bitmask().count_ones());
         }
     }
 }
 
-/// Divided by its length.
-fn normalize(v: Vec3) -> Vec3 {
-    v / v.dot(v).sqrt()
+/// Takes the rounding off the length of vectors that are all but unit: one step of Newton's method for 1/sqrt from 1.
+#[inline(always)]
+fn hold_unit<S: Simd>(v: V3<S::f32s>) -> V3<S::f32s> {
+    v.scale(S::f32s::splat(v.x.token(), 1.5) - v.dot(v) * 0.5)
+}
+
+impl Transparent {
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, frame: &Frame<'_>, hits: &Hits<'_>, materials: &Materials<'_, S>, spawning: u64) -> Self {
+        let mut found = Self { lanes: 0, bodies: 0, objects: [0; MOST_LANES] };
+        if !frame.plan.coloured_shadows {
+            return found;
+        }
+        found.lanes = materials.lanes(simd, |material| material.transparent).to_bitmask() & spawning;
+        if found.lanes == 0 {
+            return found;
+        }
+        let (ids, objects) = (&frame.scene.geometry.ids, &frame.scene.objects);
+        if let Some(primitive) = hits.common {
+            let object = ids[primitive as usize].object;
+            found.objects = [object; MOST_LANES];
+            found.bodies = if objects[object as usize].body { found.lanes } else { 0 };
+        } else {
+            for lane in bits(found.lanes) {
+                let object = ids[hits.primitives[lane] as usize].object;
+                found.objects[lane] = object;
+                found.bodies |= u64::from(objects[object as usize].body) << lane;
+            }
+        }
+        found
+    }
+}
+
+/// Which rays are worth tracing: those without weight never are.
+#[inline(always)]
+fn heavy<S: Simd>(simd: S, weight: V3<S::f32s>, min_weight: f32) -> Mask<S> {
+    let largest = weight.x.max(weight.y).max(weight.z);
+    largest.simd_gt(S::f32s::splat(simd, 0.0)) & largest.simd_ge(S::f32s::splat(simd, min_weight))
+}
+
+/// Index of refraction outside of the transparent objects hit: that of the body around, 1 where there is none.
+#[inline(always)]
+fn outside_index<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    incident: &Incident<S>,
+    transparent: &Transparent,
+    media: &Media,
+) -> S::f32s {
+    let mut index = S::f32s::splat(simd, 1.0);
+    let within = transparent.lanes & incident.media.simd_ne(S::u32s::splat(simd, OUTSIDE)).to_bitmask();
+    for_each_list(
+        simd,
+        incident,
+        &transparent.objects,
+        within,
+        #[inline(always)]
+        |list, object, lanes| {
+            if let Some(around) = media.around(list, object) {
+                let material = &frame.scene.materials[frame.scene.objects[around as usize].material as usize];
+                index = lanes.select(S::f32s::splat(simd, material.ior), index);
+            }
+        },
+    );
+    index
+}
+
+/// Shares and directions at transparent surfaces in surroundings of index `outside`. Only at `bodies` the ray bends.
+#[inline(always)]
+fn refract<S: Simd>(
+    simd: S,
+    materials: &Materials<'_, S>,
+    incident: &Incident<S>,
+    cosine: S::f32s,
+    outside: S::f32s,
+    bodies: u64,
+) -> Split<S> {
+    let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
+    let bends = Mask::<S>::from_bitmask(simd, bodies);
+    let inside = materials.row(simd, Row::Ior as usize);
+    let leaving = incident.from_behind & bends;
+    // The index on the side where the ray comes from, divided by that on the other side.
+    let eta = leaving.select(inside, outside) / leaving.select(outside, inside);
+
+    let passing = one - eta * eta * (one - cosine * cosine);
+    let total = passing.simd_lt(zero) & bends;
+    let cosine_inward = passing.max(0.0).sqrt();
+    let fresnel = materials.lanes(simd, |material| material.fresnel);
+    let mirrored = fresnel.select(dielectric_fresnel::<S>(cosine, cosine_inward, eta), zero);
+    let mirrored = total.select(one, mirrored);
+
+    let bent = incident.direction.scale(eta) + incident.normal.scale(eta * cosine - cosine_inward);
+    let transparency = materials.triple(simd, Row::Transparency);
+    Split {
+        reflected: materials.triple(simd, Row::Reflectivity) + transparency.scale(mirrored),
+        refracted: transparency.scale(one - mirrored),
+        inward: V3::select(bends, bent.normalize(), incident.direction),
+    }
+}
+
+/// Exact reflectance of unpolarised light between dielectrics; `eta` is the index in front divided by that behind.
+#[inline(always)]
+fn dielectric_fresnel<S: Simd>(cosine_in: S::f32s, cosine_out: S::f32s, eta: S::f32s) -> S::f32s {
+    let zero = S::f32s::splat(eta.token(), 0.0);
+    let across = (eta * cosine_in - cosine_out) / (eta * cosine_in + cosine_out);
+    let along = (cosine_in - eta * cosine_out) / (cosine_in + eta * cosine_out);
+    // Along a surface with the same index on both sides there is nothing to reflect from.
+    let flat = (cosine_in + cosine_out).simd_eq(zero);
+    flat.select(zero, (across * across + along * along) * 0.5)
+}
+
+/// What opaque surfaces mirror: their reflectivity, or Schlick's term for metallic-roughness.
+#[inline(always)]
+fn mirror_share<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    materials: &Materials<'_, S>,
+    color: V3<S::f32s>,
+    cosine: S::f32s,
+) -> V3<S::f32s> {
+    let reflectivity = materials.triple(simd, Row::Reflectivity);
+    if !(frame.plan.metallic_roughness && materials.any(|material| material.metallic_roughness)) {
+        return reflectivity;
+    }
+    let one = S::f32s::splat(simd, 1.0);
+    let metallic = materials.row(simd, Row::Metallic as usize);
+    let f0 = V3::all((one - metallic) * 0.04) + color.scale(metallic);
+    let x = one - cosine;
+    let x2 = x * x;
+    let schlick = f0 + (V3::all(one) - f0).scale(x2 * x2 * x);
+    V3::select(materials.lanes(simd, |material| material.metallic_roughness), schlick, reflectivity)
+}
+
+/// The bodies that rays are inside of once those in the bit set `crossing` entered or left their objects.
+#[inline(always)]
+fn cross<S: Simd>(
+    simd: S,
+    incident: &Incident<S>,
+    objects: &[u32; MOST_LANES],
+    crossing: u64,
+    media: &mut Media,
+) -> S::u32s {
+    let mut inside = incident.media;
+    let leaving = incident.from_behind.to_bitmask();
+    for (crossing, leaves) in [(crossing & leaving, true), (crossing & !leaving, false)] {
+        for_each_list(
+            simd,
+            incident,
+            objects,
+            crossing,
+            #[inline(always)]
+            |list, object, lanes| {
+                let next = if leaves { media.leave(list, object) } else { media.enter(list, object) };
+                inside = lanes.select(S::u32s::splat(simd, next), inside);
+            },
+        );
+    }
+    inside
+}
+
+/// Calls `visit` for each list of bodies and each object that some of `lanes` share, with those lanes. Rays that share
+/// their history and their object share the list: mostly, that is the whole packet.
+#[inline(always)]
+fn for_each_list<S: Simd>(
+    simd: S,
+    incident: &Incident<S>,
+    objects: &[u32; MOST_LANES],
+    lanes: u64,
+    mut visit: impl FnMut(MediaList, u32, Mask<S>),
+) {
+    let (lists, all_objects) = (incident.media, S::u32s::from_slice(simd, &objects[..S::f32s::LEN]));
+    let mut left = lanes;
+    while left != 0 {
+        let lane = left.trailing_zeros() as usize % MOST_LANES;
+        let (list, object) = (lists.as_slice()[lane], objects[lane]);
+        let same = lists.simd_eq(list).to_bitmask() & all_objects.simd_eq(object).to_bitmask() & left;
+        left &= !same;
+        visit(list, object, Mask::<S>::from_bitmask(simd, same));
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::{SimdToken, dispatch};
+
+    fn lanes<S: Simd>(simd: S, [cosine_in, cosine_out, eta]: [f32; 3]) -> f32 {
+        let splat = |value| S::f32s::splat(simd, value);
+        dielectric_fresnel::<S>(splat(cosine_in), splat(cosine_out), splat(eta))[0]
+    }
 
     #[test]
     fn fresnel_at_normal_incidence_and_at_grazing() {
-        assert!((dielectric_fresnel(1.0, 1.0, 1.0 / 1.5) - 0.04).abs() < 1e-6);
-        assert!((dielectric_fresnel(1.0, 1.0, 1.5) - 0.04).abs() < 1e-6);
+        let fresnel = |terms: [f32; 3]| dispatch!(SimdToken::best(), simd => lanes(simd, terms));
+        assert!((fresnel([1.0, 1.0, 1.0 / 1.5]) - 0.04).abs() < 1e-6);
+        assert!((fresnel([1.0, 1.0, 1.5]) - 0.04).abs() < 1e-6);
         let grazing = (1.0_f32 - 1.0 / 2.25).sqrt();
-        assert!(dielectric_fresnel(1e-4, grazing, 1.0 / 1.5) > 0.999);
-        assert_eq!(dielectric_fresnel(0.5, 0.5, 1.0), 0.0);
-        assert_eq!(dielectric_fresnel(0.0, 0.0, 1.0), 0.0);
+        assert!(fresnel([1e-4, grazing, 1.0 / 1.5]) > 0.999);
+        assert_eq!(fresnel([0.5, 0.5, 1.0]), 0.0);
+        assert_eq!(fresnel([0.0, 0.0, 1.0]), 0.0);
     }
 }

@@ -2,14 +2,17 @@
 
 use super::brdf::Reflectance;
 use super::frame::Frame;
-use super::gather::{Hits, Materials, Surfaces, surfaces};
+use super::gather::{Hits, Surfaces, surfaces};
 use super::leave;
-use super::queue::RayQueue;
+use super::materials::Materials;
+use super::media::OUTSIDE;
+use super::queue::{RUN, RayQueue, ShadowQueue};
 use super::secondary::{self, Incident};
-use super::tables::Row;
+use super::tables::{FlatMaterial, Row};
 use super::tile::{Seen, Worker};
 use crate::geometry::NO_PRIMITIVE;
 use crate::math::V3;
+use crate::math::power::exp;
 use crate::scene::light::{Falloff, LightKind};
 use crate::scene::{Light, Scene};
 use fearless_simd::Simd;
@@ -31,38 +34,91 @@ struct Lit<S: Simd> {
     normal: V3<S::f32s>,
     to_viewer: V3<S::f32s>,
     weight: V3<S::f32s>,
-    opacity: V3<S::f32s>,
 }
 
-/// Shades the hits in `worker.rays`; leaves shadow rays in `worker.shadows` and rays of the next level in
-/// `worker.next_rays`.
+/// Shades the hits in `worker.rays`; leaves shadow rays in `worker.shadows`, and rays of the next level in
+/// `worker.mirrored` and `worker.refracted`.
 pub(super) fn shade<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &mut Worker) {
-    worker.next_rays.clear();
-    if frame.plan.media {
-        absorb(frame, worker);
-    }
+    worker.make_room();
     simd.vectorize(
         #[inline(always)]
         || {
+            if frame.plan.absorption {
+                absorb(simd, frame, worker);
+            }
             for at in (0..worker.rays.len()).step_by(S::f32s::LEN) {
+                if at % RUN == 0 {
+                    mark_runs(&mut worker.shadows);
+                }
                 shade_packet(simd, frame, level, at, worker);
             }
+            mark_runs(&mut worker.shadows);
         },
     );
 }
 
-/// Weakens rays by what they crossed inside of bodies.
-fn absorb(frame: &Frame<'_>, worker: &mut Worker) {
-    let Worker { rays, media, .. } = worker;
-    for at in 0..rays.len() {
-        let Some(body) = media.current(rays.media[at]) else { continue };
-        let absorption = absorption_of(frame.scene, body);
-        if absorption != Vec3::ZERO {
-            let length = if rays.primitive[at] == NO_PRIMITIVE { f32::INFINITY } else { rays.t[at] };
-            let left = absorption.to_array().map(|a| if a == 0.0 { 1.0 } else { libm::expf(-a * length) });
-            rays.weight.set(at, rays.weight.get(at) * Vec3::from_array(left));
+impl Worker {
+    /// Makes room for all that the hits in `rays` may be followed by.
+    fn make_room(&mut self) {
+        for queue in &mut self.shadows {
+            queue.reserve(self.rays.len());
+        }
+        for queue in [&mut self.mirrored, &mut self.refracted] {
+            queue.clear();
+            queue.reserve(self.rays.len());
         }
     }
+}
+
+/// Begins the next run of shadow rays towards every light.
+fn mark_runs(shadows: &mut [ShadowQueue]) {
+    for queue in shadows {
+        queue.mark_run();
+    }
+}
+
+/// Weakens rays by what they crossed inside of bodies (Beer and Lambert): exp(-absorption · length).
+#[inline(always)]
+fn absorb<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
+    let Worker { rays, media, .. } = worker;
+    for at in (0..rays.len()).step_by(S::f32s::LEN) {
+        let lists = &rays.media[at..at + S::f32s::LEN];
+        let lanes = S::u32s::from_slice(simd, lists);
+        let mut left = lanes.simd_ne(OUTSIDE).to_bitmask() & present::<S>(rays, at);
+        while left != 0 {
+            let list = lists[left.trailing_zeros() as usize];
+            let same = lanes.simd_eq(list);
+            left &= !same.to_bitmask();
+            let absorption = media.current(list).map_or(Vec3::ZERO, |body| absorption_of(frame.scene, body));
+            if absorption != Vec3::ZERO {
+                let missed = S::u32s::from_slice(simd, &rays.primitive[at..at + S::f32s::LEN]).simd_eq(NO_PRIMITIVE);
+                let t = S::f32s::from_slice(simd, &rays.t[at..at + S::f32s::LEN]);
+                let length = missed.select(S::f32s::splat(simd, f32::INFINITY), t);
+                let left = transmittance(simd, absorption, length);
+                let weight: V3<S::f32s> = rays.weight.load(simd, at);
+                rays.weight.store::<S>(at, V3::select(same, weight * left, weight));
+            }
+        }
+    }
+}
+
+/// Bit set of the lanes of the packet at `at` that are rays and not padding.
+#[inline(always)]
+fn present<S: Simd>(rays: &RayQueue, at: usize) -> u64 {
+    (1 << (rays.len() - at).min(S::f32s::LEN)) - 1
+}
+
+/// What is left after a way through a body.
+#[inline(always)]
+fn transmittance<S: Simd>(simd: S, absorption: Vec3, length: S::f32s) -> V3<S::f32s> {
+    let mut left = [S::f32s::splat(simd, 1.0); 3];
+    for (left, a) in left.iter_mut().zip(absorption.to_array()) {
+        // An infinite way without absorption takes nothing.
+        if a != 0.0 {
+            *left = exp::<S, S::f32s>(length * -a);
+        }
+    }
+    V3::new(left[0], left[1], left[2])
 }
 
 fn absorption_of(scene: &Scene, object: u32) -> Vec3 {
@@ -72,14 +128,13 @@ fn absorption_of(scene: &Scene, object: u32) -> Vec3 {
 #[inline(always)]
 fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, worker: &mut Worker) {
     let lanes = at..at + S::f32s::LEN;
-    let Worker { rays, next_rays, shadows, media, color: pixels, seen, stats, .. } = worker;
+    let Worker { rays, mirrored, refracted, shadows, media, color: colors, seen, stats, .. } = worker;
     let hits = Hits::new(simd, &rays.primitive[lanes.clone()]);
-    let count = (rays.len() - at).min(S::f32s::LEN);
-    let missed = |lane: usize| rays.weight.get(at + lane) * frame.scene.render.background;
+    let (samples, present) = (&rays.sample[lanes.clone()], present::<S>(rays, at));
+    let weight: V3<S::f32s> = rays.weight.load(simd, at);
+    let background = weight * V3::splat(simd, frame.scene.render.background);
     if hits.active == 0 {
-        for lane in 0..count {
-            add(pixels, rays.sample[at + lane], missed(lane));
-        }
+        colors.deposit(simd, level == 1, samples, present, background);
         return;
     }
     let (origin, direction) = (rays.origin.load::<S>(simd, at), rays.direction.load::<S>(simd, at));
@@ -88,61 +143,79 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
     let view = View::new(simd, &surfaces, direction);
     if level == 1 && frame.keeps_normals {
         for lane in hits.lanes() {
-            seen[rays.sample[at + lane] as usize].normal = view.normal.lane(lane).into();
+            seen[samples[lane] as usize].normal = view.normal.lane(lane).into();
         }
     }
 
     let materials = Materials::new(simd, frame, &hits);
-    let (color, emission) = materials.colors(simd, frame, &hits, &surfaces);
+    let mut color = materials.triple(simd, Row::Color);
+    let mut emission = if frame.plan.emission { materials.triple(simd, Row::Emission) } else { V3::zero(simd) };
+    if frame.plan.textures && materials.any(FlatMaterial::is_textured) {
+        materials.look_up(simd, frame, &hits, &surfaces, &mut color, &mut emission);
+    }
+    let opacity = materials.triple(simd, Row::Opacity);
+    let active = Mask::<S>::from_bitmask(simd, hits.active);
+    let ambient = V3::splat(simd, frame.ambient) * materials.triple(simd, Row::Ambient);
+    let own = weight * (opacity * ambient * color + emission);
+    colors.deposit(simd, level == 1, samples, present, V3::select(active, own, background));
+
     let lit = Lit::<S> {
-        active: Mask::<S>::from_bitmask(simd, hits.active),
+        active,
         position: surfaces.point.position,
         facing: view.facing,
         margin: leave::margin::<S>(surfaces.point.scale),
         normal: view.normal,
         to_viewer: -direction,
-        weight: rays.weight.load(simd, at),
-        opacity: materials.triple(simd, frame, Row::Opacity),
+        weight,
     };
-    let ambient = V3::splat(simd, frame.ambient) * materials.triple(simd, frame, Row::Ambient);
-    let own = lit.weight * (lit.opacity * ambient * color + emission);
-    // In queue order, hits and misses alike: rays of one sample may lie in one packet or in two, as wide as it is.
-    for lane in 0..count {
-        let light = if hits.active >> lane & 1 == 0 { missed(lane) } else { own.lane(lane) };
-        add(pixels, rays.sample[at + lane], light);
-    }
-
-    let reflectance = Reflectance::gather(simd, frame, &materials, color, lit.opacity);
-    let samples = &rays.sample[lanes];
+    let reflectance = Reflectance::gather(simd, frame, &materials, color, opacity);
+    let samples = S::u32s::from_slice(simd, samples);
+    let primitives = S::u32s::from_slice(simd, hits.primitives);
+    // All shapes are flat or, from outside, convex: a ray that leaves their outside does not come back.
+    let convex = Mask::<S>::from_bitmask(simd, surfaces.flat) | !view.from_behind;
     for (light, queue) in frame.lights.iter().zip(shadows) {
         let Some((reaching, to_light, distance, gain)) = light_gain(simd, light, &lit, &reflectance) else {
             continue;
         };
+        let gone = convex & lit.facing.dot(to_light).simd_gt(S::f32s::splat(simd, 0.0));
+        let source = gone.select(primitives, S::u32s::splat(simd, NO_PRIMITIVE));
         let start = leave::start::<S>(lit.position, lit.facing, lit.margin, to_light);
         let reach = leave::reach::<S>(distance, lit.margin);
-        queue.push_lanes::<S>(reaching, start, to_light, reach, gain, samples);
+        queue.push_lanes::<S>(reaching, start, to_light, reach, gain, samples, source);
     }
 
-    if level < frame.plan.depth && (frame.plan.reflections || frame.plan.refractions) {
-        let spawns = |material: usize| frame.tables.materials[material].secondary;
-        if materials.any(spawns) {
-            for lane in hits.lanes().filter(|&lane| spawns(materials.of(lane))) {
-                let incident = Incident {
-                    direction: direction.lane(lane),
-                    position: surfaces.point.position.lane(lane),
-                    facing: view.facing.lane(lane),
-                    margin: lit.margin[lane],
-                    normal: view.normal.lane(lane),
-                    entering: !view.from_behind.test(lane),
-                    object: frame.scene.geometry.ids[hits.primitives[lane] as usize].object,
-                    color: color.lane(lane),
-                    weight: rays.weight.get(at + lane),
-                    sample: rays.sample[at + lane],
-                    media: rays.media[at + lane],
-                };
-                secondary::follow(frame, &incident, media, next_rays, &mut stats.rays);
-            }
-        }
+    if level < frame.plan.depth
+        && (frame.plan.reflections || frame.plan.refractions)
+        && materials.any(|material| material.secondary)
+    {
+        let incident = Incident {
+            spawning: active & materials.lanes(simd, |material| material.secondary),
+            direction,
+            position: lit.position,
+            facing: lit.facing,
+            margin: lit.margin,
+            normal: lit.normal,
+            from_behind: view.from_behind,
+            color,
+            weight,
+            samples,
+            media: S::u32s::from_slice(simd, &rays.media[lanes]),
+        };
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                secondary::follow(
+                    simd,
+                    frame,
+                    &hits,
+                    &materials,
+                    &incident,
+                    media,
+                    [mirrored, refracted],
+                    &mut stats.rays,
+                )
+            },
+        );
     }
 }
 
@@ -169,13 +242,6 @@ impl<S: Simd> View<S> {
     }
 }
 
-/// Adds light to a sample.
-#[inline(always)]
-pub(super) fn add(pixels: &mut [[f32; 3]], sample: u32, light: Vec3) {
-    let pixel = &mut pixels[sample as usize];
-    *pixel = [pixel[0] + light.x, pixel[1] + light.y, pixel[2] + light.z];
-}
-
 /// What a light adds if nothing is in its way, for the lanes that it can reach at all, with the direction and distance
 /// to it. `None` if it reaches none.
 #[inline(always)]
@@ -186,44 +252,56 @@ fn light_gain<S: Simd>(
     lit: &Lit<S>,
     reflectance: &Reflectance<S>,
 ) -> Option<(Mask<S>, V3<S::f32s>, S::f32s, V3<S::f32s>)> {
-    let zero = S::f32s::splat(simd, 0.0);
-    let (to_light, distance) = match light.kind {
+    let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
+    let mut arriving = V3::splat(simd, light.color);
+    let (reaching, to_light, n_dot_l, distance) = match light.kind {
+        LightKind::Directional { direction } => {
+            let to_light = V3::splat(simd, -direction);
+            let n_dot_l = lit.normal.dot(to_light);
+            let reaching = lit.active & n_dot_l.simd_gt(zero);
+            if !reaching.any_true() {
+                return None;
+            }
+            (reaching, to_light, n_dot_l, S::f32s::splat(simd, f32::INFINITY))
+        }
         LightKind::Point { position } | LightKind::Spot { position, .. } => {
             let to = V3::splat(simd, position) - lit.position;
+            let above = lit.normal.dot(to);
+            let mut reaching = lit.active & above.simd_gt(zero);
+            if !reaching.any_true() {
+                return None;
+            }
             let distance = to.dot(to).sqrt();
-            (V3::new(to.x / distance, to.y / distance, to.z / distance), distance)
+            let inverse = one / distance;
+            if let LightKind::Spot { direction, cos_inner, cos_outer, .. } = light.kind {
+                let cosine = V3::splat(simd, -direction).dot(to) * inverse;
+                let share = spot_share::<S>(cosine, cos_inner, cos_outer);
+                reaching &= share.simd_gt(zero);
+                if !reaching.any_true() {
+                    return None;
+                }
+                arriving = arriving.scale(share);
+            }
+            if light.falloff == Falloff::InverseSquare {
+                arriving = arriving.scale(inverse * inverse);
+            }
+            (reaching, to.scale(inverse), above * inverse, distance)
         }
-        LightKind::Directional { direction } => (V3::splat(simd, -direction), S::f32s::splat(simd, f32::INFINITY)),
     };
-    let n_dot_l = lit.normal.dot(to_light);
-    let mut reaching = lit.active & n_dot_l.simd_gt(zero);
-    if !reaching.any_true() {
-        return None;
-    }
-    let mut arriving = V3::splat(simd, light.color);
-    if let LightKind::Spot { direction, cos_inner, cos_outer, .. } = light.kind {
-        let share = spot_share(simd, to_light, direction, cos_inner, cos_outer);
-        reaching &= share.simd_gt(zero);
-        if !reaching.any_true() {
-            return None;
-        }
-        arriving = arriving.scale(share);
-    }
-    if light.falloff == Falloff::InverseSquare && !matches!(light.kind, LightKind::Directional { .. }) {
-        arriving = arriving.scale(S::f32s::splat(simd, 1.0) / (distance * distance));
-    }
-
     let reflected = reflectance.towards(simd, lit.normal, lit.to_viewer, to_light, n_dot_l);
     Some((reaching, to_light, distance, lit.weight * arriving * reflected))
 }
 
-/// glTF's KHR_lights_punctual: the square of a linear ramp between the cosines of the two half-angles.
+/// How much of a spot's light goes along a direction: the square of a linear ramp between the cosines of its two
+/// half-angles, as in glTF's KHR_lights_punctual, which keeps the ramp at least 0.001 wide.
+///
+/// A cone of less than 2.6° is narrower than that, and would be dim even along its axis: there the ramp is as wide as
+/// the cone, so that every spot reaches full brightness at its centre.
 #[inline(always)]
-fn spot_share<S: Simd>(simd: S, to_light: V3<S::f32s>, direction: Vec3, cos_inner: f32, cos_outer: f32) -> S::f32s {
-    let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
-    let cosine = V3::splat(simd, -direction).dot(to_light);
-    let ramp = (cosine - cos_outer) / (cos_inner - cos_outer).max(1e-4);
-    let ramp = ramp.max(zero).min(one);
+fn spot_share<S: Simd>(cosine: S::f32s, cos_inner: f32, cos_outer: f32) -> S::f32s {
+    const LEAST_WIDTH: f32 = 1e-3;
+    let width = (cos_inner - cos_outer).max(LEAST_WIDTH.min(1.0 - cos_outer)).max(f32::EPSILON);
+    let ramp = ((cosine - cos_outer) / width).max(0.0).min(1.0);
     ramp * ramp
 }
 

@@ -1,6 +1,6 @@
 //! What shading reads of a scene, flattened for gathering into lanes. Made once a scene.
 
-use crate::geometry::Opaque;
+use crate::geometry::{Geometry, Opaque, PrimitiveIndex, VertexAttributes};
 use crate::scene::material::{ColorSource, Model};
 use crate::scene::{Material, Scene};
 use glam::Vec3;
@@ -28,10 +28,16 @@ pub enum Row {
     Metallic = 19,
     /// 0 to 1, metallic-roughness only; negative marks a Phong-type material.
     Roughness = 20,
+    /// First of three: weight of the mirror ray, before Fresnel.
+    Reflectivity = 21,
+    /// First of three: weight of the refracted ray, before Fresnel.
+    Transparency = 24,
+    /// Index of refraction.
+    Ior = 27,
 }
 
 /// Numbers a material has.
-pub const ROWS: usize = 21;
+pub const ROWS: usize = 28;
 
 /// One material, flattened.
 #[derive(Clone, Debug)]
@@ -44,8 +50,14 @@ pub struct FlatMaterial {
     pub emission_texture: Option<u32>,
     /// Whether it has a highlight.
     pub shiny: bool,
+    /// Whether it gives off light.
+    pub emissive: bool,
     /// Whether it is metallic-roughness.
     pub metallic_roughness: bool,
+    /// Whether light passes through.
+    pub transparent: bool,
+    /// Whether Fresnel's equations share out what passes.
+    pub fresnel: bool,
     /// Whether it reflects or refracts rays.
     pub secondary: bool,
 }
@@ -68,6 +80,9 @@ impl FlatMaterial {
         put(Row::Color, &color.to_array());
         put(Row::Opacity, &(Vec3::ONE - material.transparency).to_array());
         put(Row::Emission, &emission.to_array());
+        put(Row::Reflectivity, &material.reflectivity.to_array());
+        put(Row::Transparency, &material.transparency.to_array());
+        put(Row::Ior, &[material.ior]);
         let mut smooth = true;
         match material.model {
             Model::Phong { ambient, diffuse, specular, shininess } => {
@@ -88,6 +103,9 @@ impl FlatMaterial {
         let mirrors = metallic_roughness || material.reflectivity != Vec3::ZERO;
         Self {
             shiny: rows[Row::Specular as usize..][..3] != [0.0; 3],
+            emissive: emission_texture.is_some() || emission != Vec3::ZERO,
+            transparent: material.is_transparent(),
+            fresnel: material.fresnel,
             rows,
             color_texture,
             emission_texture,
@@ -97,6 +115,16 @@ impl FlatMaterial {
     }
 }
 
+impl FlatMaterial {
+    /// Whether any of its colours is looked up.
+    pub fn is_textured(&self) -> bool {
+        self.color_texture.is_some() || self.emission_texture.is_some()
+    }
+}
+
+/// A primitive that carries nothing.
+const NOTHING: u32 = u32::MAX;
+
 /// Flattened materials and what shadow rays need to know of primitives.
 #[derive(Debug, Default)]
 pub struct Tables {
@@ -104,6 +132,10 @@ pub struct Tables {
     pub generation: Option<u64>,
     /// As the scene's materials.
     pub materials: Vec<FlatMaterial>,
+    /// The material of each primitive.
+    pub material_of: Vec<u32>,
+    /// Where the attributes of each primitive lie, or [`NOTHING`]; empty where none carries any.
+    attributes_of: Vec<u32>,
     /// For each primitive whether it blocks all light; empty where every one does.
     pub opaque: Vec<bool>,
     /// Objects that bound a transparent body.
@@ -123,12 +155,28 @@ impl Tables {
         let transparent_bodies = (0..scene.objects.len() as u32)
             .filter(|&o| scene.objects[o as usize].body && material_of(o).is_transparent())
             .collect();
+        let mut attributes_of = Vec::new();
+        if !scene.geometry.attributes.is_empty() {
+            attributes_of.resize(scene.geometry.len(), NOTHING);
+            for (place, (primitive, _)) in (0..).zip(&scene.geometry.attributes) {
+                attributes_of[*primitive as usize] = place;
+            }
+        }
         Self {
             generation: Some(scene.generation),
+            material_of: scene.geometry.ids.iter().map(|id| scene.objects[id.object as usize].material).collect(),
+            attributes_of,
             materials: scene.materials.iter().map(FlatMaterial::new).collect(),
             opaque,
             transparent_bodies,
         }
+    }
+
+    /// What the corners of a primitive carry, in the kernel's order.
+    #[inline]
+    pub fn attributes<'a>(&self, geometry: &'a Geometry, primitive: PrimitiveIndex) -> Option<&'a VertexAttributes> {
+        let place = *self.attributes_of.get(primitive as usize)?;
+        geometry.attributes.get(place as usize).map(|(_, attributes)| attributes)
     }
 
     /// What blocks all light.

@@ -1,17 +1,15 @@
-//! One tile: visibility, then level after level of its paths, then bytes. No recursion.
+//! One tile: visibility, then queue after queue of its paths, then bytes. No recursion.
 
-use super::film::{FilmTile, TILE};
+use super::film::FilmTile;
 use super::frame::Frame;
-use super::media::Media;
+use super::media::{Media, MediaMark};
 use super::queue::{RayQueue, ShadowQueue};
+use super::samples::{Colors, SAMPLES, sample_at};
 use super::{FrameStats, shade, shadow, trace, visibility};
 use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex, Stack};
 use crate::settings::Supersample;
 use fearless_simd::Simd;
 use std::time::Instant;
-
-/// Samples along one side of a tile: its pixels, and one row and column more for the corners of cells at its border.
-pub const GRID: usize = TILE + 1;
 
 /// What a thread keeps from tile to tile. Nothing in it carries from one tile's picture to the next's.
 #[derive(Debug, Default)]
@@ -20,19 +18,38 @@ pub struct Worker {
     pub stats: FrameStats,
     pub(super) stack: Stack,
     pub(super) rays: RayQueue,
-    pub(super) next_rays: RayQueue,
+    /// Rays that follow from `rays`.
+    pub(super) mirrored: RayQueue,
+    pub(super) refracted: RayQueue,
     /// Rays from the eye whose hits are known, gathered until all are.
     pub(super) found: RayQueue,
     pub(super) shadows: Vec<ShadowQueue>,
     pub(super) media: Media,
-    /// For each light the primitive that blocked it last in this tile: the thesis's shadow-object cache.
-    pub(super) last_blocker: Vec<PrimitiveIndex>,
+    pub(super) shadow_scratch: shadow::ShadowScratch,
     /// Colour of each sample of the tile's grid.
-    pub(super) color: Vec<[f32; 3]>,
+    pub(super) color: Colors,
     /// What each sample sees, and how far away.
     pub(super) seen: Vec<Seen>,
     pub(super) cells: visibility::Cells,
-    sums: Vec<[f32; 3]>,
+    pub(super) order: visibility::Order,
+    pub(super) levels: Option<Box<visibility::Levels>>,
+    /// Queues whose turn has not come, the next one last.
+    waiting: Vec<Waiting>,
+    /// Empty queues, for their memory.
+    spare: Vec<RayQueue>,
+    sums: Colors,
+    /// What the pixels' centres see, while other samples of a grid are seen.
+    seen_at_centres: Vec<Seen>,
+}
+
+/// Rays that wait until all that follows from earlier ones is done.
+#[derive(Debug)]
+struct Waiting {
+    /// How many rays their paths have, they included.
+    level: u32,
+    /// What they know of the bodies around them lies before this.
+    media: MediaMark,
+    rays: RayQueue,
 }
 
 /// What a sample's ray from the eye hit.
@@ -64,17 +81,6 @@ pub struct Pass {
     pub offset: [f32; 2],
 }
 
-/// Which sample of the grid a pixel of the tile is.
-#[inline(always)]
-pub fn sample_at(x: usize, y: usize) -> u32 {
-    (y * GRID + x) as u32
-}
-
-/// The inverse of [`sample_at`].
-pub fn pixel_at(sample: u32) -> [u16; 2] {
-    [(sample as usize % GRID) as u16, (sample as usize / GRID) as u16]
-}
-
 /// Renders one tile of the film.
 pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, tile: &mut FilmTile, worker: &mut Worker) {
     worker.begin_tile(frame);
@@ -90,38 +96,43 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, tile: &mut FilmTile, w
     match frame.settings.supersample {
         Supersample::Off => {
             visibility::render_pass(simd, frame, &centre, worker);
-            tile.store_colors(&worker.color);
+            std::mem::swap(&mut tile.color, &mut worker.color);
         }
         Supersample::Grid { side } => {
             if tile.keeps_planes() {
                 visibility::find_all(simd, frame, &centre, worker);
             }
             worker.render_grid(simd, frame, &centre, side);
-            tile.store_colors(&worker.sums);
+            std::mem::swap(&mut tile.color, &mut worker.sums);
             worker.stats.supersampled += (tile.width * tile.height) as u64;
         }
     }
     tile.store_planes(frame, &worker.seen);
     let start = Instant::now();
-    tile.encode(&frame.encoder);
+    tile.encode(simd, &frame.encoder);
     worker.stats.stages_ms.resolve += milliseconds_since(start);
 }
 
 impl Worker {
     fn begin_tile(&mut self, frame: &Frame<'_>) {
         self.shadows.resize_with(frame.lights.len(), ShadowQueue::default);
-        self.last_blocker.clear();
-        self.last_blocker.resize(frame.lights.len(), NO_PRIMITIVE);
-        self.color.resize(GRID * GRID, [0.0; 3]);
-        self.seen.resize(GRID * GRID, Seen::NOTHING);
+        self.shadow_scratch.begin_tile(frame.lights.len());
+        self.color.prepare();
+        self.seen.resize(SAMPLES, Seen::NOTHING);
+    }
+
+    /// Rays and bodies that there is memory for, in queues that rays follow each other through.
+    #[cfg(test)]
+    pub(super) fn room(&self) -> usize {
+        let queues = [&self.rays, &self.mirrored, &self.refracted].into_iter().chain(&self.spare);
+        queues.map(|queue| queue.t.capacity()).sum::<usize>() + self.media.room()
     }
 
     /// Averages `side` x `side` passes, in row order. What the planes hold stays that of the pixels' centres.
     fn render_grid<S: Simd>(&mut self, simd: S, frame: &Frame<'_>, centre: &Pass, side: u32) {
-        let seen = std::mem::take(&mut self.seen);
-        self.seen.resize(GRID * GRID, Seen::NOTHING);
+        std::mem::swap(&mut self.seen, &mut self.seen_at_centres);
+        self.seen.resize(SAMPLES, Seen::NOTHING);
         self.sums.clear();
-        self.sums.resize(GRID * GRID, [0.0; 3]);
         let pixels_before = self.stats.pixels;
         let step = 1.0 / side as f32;
         for row in 0..side {
@@ -129,21 +140,22 @@ impl Worker {
                 let offset = [(column as f32 + 0.5) * step, (row as f32 + 0.5) * step];
                 self.stats.pixels = pixels_before;
                 visibility::render_pass(simd, frame, &Pass { offset, ..*centre }, self);
-                for (sum, color) in self.sums.iter_mut().zip(&self.color) {
-                    *sum = std::array::from_fn(|c| sum[c] + color[c]);
-                }
+                self.sums.add_all(&self.color);
             }
         }
-        let share = 1.0 / (side * side) as f32;
-        for sum in &mut self.sums {
-            *sum = sum.map(|c| c * share);
-        }
-        self.seen = seen;
+        self.sums.scale(1.0 / (side * side) as f32);
+        std::mem::swap(&mut self.seen, &mut self.seen_at_centres);
     }
 
     /// Shades the hits in `rays`, then everything that follows from them, adding to the samples' colours.
+    ///
+    /// Paths are followed depth first, a queue at a time: all that follows from the mirrored rays of a queue comes
+    /// before its refracted rays. So at most one queue of each level waits, whatever the depth; a queue's rays share
+    /// their history and stay coherent; and no queue holds two rays of one sample, whose light is summed in an order
+    /// that depends on nothing else in the tile.
     pub(super) fn shade_paths<S: Simd>(&mut self, simd: S, frame: &Frame<'_>) {
-        for level in 1..=frame.plan.depth {
+        let mut level = 1;
+        loop {
             let start = Instant::now();
             shade::shade(simd, frame, level, self);
             self.stats.stages_ms.shade += milliseconds_since(start);
@@ -152,13 +164,28 @@ impl Worker {
             shadow::resolve(simd, frame, level, self);
             self.stats.stages_ms.shadow += milliseconds_since(start);
 
-            if self.next_rays.len() == 0 {
-                break;
+            self.queue_followers(level + 1);
+            if frame.cancel.is_cancelled() {
+                self.spare.extend(self.waiting.drain(..).map(|waiting| waiting.rays));
             }
-            std::mem::swap(&mut self.rays, &mut self.next_rays);
+            let Some(next) = self.waiting.pop() else { break };
+            level = next.level;
+            self.media.truncate(next.media);
+            self.spare.push(std::mem::replace(&mut self.rays, next.rays));
             let start = Instant::now();
             trace::closest_hits(simd, frame, self);
             self.stats.stages_ms.secondary += milliseconds_since(start);
+        }
+    }
+
+    /// Lets the rays that follow wait, mirrored ones next.
+    fn queue_followers(&mut self, level: u32) {
+        let media = self.media.mark();
+        for followers in [&mut self.refracted, &mut self.mirrored] {
+            if followers.len() > 0 {
+                let empty = self.spare.pop().unwrap_or_default();
+                self.waiting.push(Waiting { level, media, rays: std::mem::replace(followers, empty) });
+            }
         }
     }
 }
@@ -166,12 +193,6 @@ impl Worker {
 impl FilmTile {
     fn keeps_planes(&self) -> bool {
         !(self.depth.is_empty() && self.normal.is_empty() && self.object.is_empty() && self.primitive.is_empty())
-    }
-
-    fn store_colors(&mut self, samples: &[[f32; 3]]) {
-        for (row, pixels) in self.color.chunks_exact_mut(self.width).enumerate() {
-            pixels.copy_from_slice(&samples[row * GRID..][..self.width]);
-        }
     }
 
     fn store_planes(&mut self, frame: &Frame<'_>, seen: &[Seen]) {

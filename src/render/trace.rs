@@ -6,6 +6,7 @@ use super::tile::Worker;
 use crate::geometry::{ClosestHit, NO_PRIMITIVE, Packet, Search, SphereTerms, Stack};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use std::ops::Range;
 
 /// Finds the closest hits of the secondary rays in `worker.rays`.
 pub(super) fn closest_hits<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
@@ -27,14 +28,42 @@ pub(super) fn test_primitive<S: Simd>(simd: S, frame: &Frame<'_>, primitive: u32
         #[inline(always)]
         || {
             for_each_packet(simd, &search, rays, first, frame.camera.near, frame.camera.far, |packet, visitor| {
-                search.test_one(simd, primitive, packet, visitor);
+                search.test_one(simd, primitive, &packet.rays, visitor);
             });
         },
     );
 }
 
+/// Finds the closest hits of some of the rays from the eye in `worker.rays`, and perhaps of rays behind them.
+pub(super) fn primary_range<S: Simd>(simd: S, frame: &Frame<'_>, range: Range<usize>, worker: &mut Worker) {
+    let search = eye_search(frame);
+    let Worker { rays, stack, stats, .. } = worker;
+    stats.rays.primary += range.len() as u64;
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let (near, far) = (S::f32s::splat(simd, frame.camera.near), S::f32s::splat(simd, frame.camera.far));
+            for at in range.step_by(S::f32s::LEN) {
+                let packet = Packet::new(search.geometry, rays.origin.load(simd, at), rays.direction.load(simd, at));
+                let mut visitor = ClosestHit::new(simd, near, far);
+                search.traverse(simd, &packet, stack, &mut visitor);
+                store_hits(simd, &visitor, rays, at);
+            }
+        },
+    );
+}
+
+/// Stores what a packet found.
+#[inline(always)]
+pub(super) fn store_hits<S: Simd>(simd: S, found: &ClosestHit<S>, rays: &mut RayQueue, at: usize) {
+    let missed = found.primitive.simd_eq(S::u32s::splat(simd, NO_PRIMITIVE));
+    let t = missed.select(S::f32s::splat(simd, f32::INFINITY), found.t);
+    t.store_slice(&mut rays.t[at..at + S::f32s::LEN]);
+    found.primitive.store_slice(&mut rays.primitive[at..at + S::f32s::LEN]);
+}
+
 /// A search by rays that share the eye.
-fn eye_search<'a>(frame: &Frame<'a>) -> Search<'a> {
+pub(super) fn eye_search<'a>(frame: &Frame<'a>) -> Search<'a> {
     let sphere_terms: SphereTerms<'a> = frame.sphere_terms;
     Search { sphere_terms, ..Search::new(&frame.scene.geometry, frame.plan.tree) }
 }
@@ -67,10 +96,7 @@ fn for_each_packet<S: Simd>(
         let packet = Packet::new(search.geometry, rays.origin.load(simd, at), rays.direction.load(simd, at));
         let mut visitor = ClosestHit::new(simd, t_min, t_max);
         find(&packet, &mut visitor);
-        let missed = visitor.primitive.simd_eq(S::u32s::splat(simd, NO_PRIMITIVE));
-        let t = missed.select(S::f32s::splat(simd, f32::INFINITY), visitor.t);
-        t.store_slice(&mut rays.t[at..at + S::f32s::LEN]);
-        visitor.primitive.store_slice(&mut rays.primitive[at..at + S::f32s::LEN]);
+        store_hits(simd, &visitor, rays, at);
     }
     // The last packet's spare lanes repeated the last ray, and found what it found.
     rays.clear_padding();

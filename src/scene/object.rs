@@ -1,7 +1,11 @@
 //! Leaf objects: what ties shapes to a material, a name and texture coordinates.
 
 use crate::geometry::Aabb;
-use glam::{Affine3A, Vec2, Vec3, Vec3A};
+use crate::math::V3;
+use crate::math::arctangent::atan2;
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+use glam::{Affine3A, Mat3A, Vec3};
 use std::f32::consts::{PI, TAU};
 
 /// How a point of an object gets its texture coordinates. All of it in the object's own space.
@@ -52,29 +56,68 @@ pub struct Object {
 }
 
 impl Object {
-    /// Texture coordinates of a point in the world with its geometric normal. `own` are those that a triangle's
-    /// corners carry.
-    pub fn texture_coordinates(&self, primitive: u32, position: Vec3, normal: Vec3, own: Option<Vec2>) -> Vec2 {
-        let p = self.world_to_object.map_or(position, |m| m.transform_point3(position));
-        let planar = |[u, v]: [Vec3; 2]| Vec2::new(p.dot(u), p.dot(v));
+    /// Texture coordinates of points in the world with their geometric normals. `sides` are the lanes that lie on the
+    /// object's first primitive: the side of a cylinder or cone. `own` are the coordinates that triangles carry.
+    #[inline(always)]
+    pub fn texture_coordinates<S: Simd>(
+        &self,
+        simd: S,
+        position: V3<S::f32s>,
+        normal: V3<S::f32s>,
+        sides: <S::f32s as SimdBase<S>>::Mask,
+        own: [S::f32s; 2],
+    ) -> [S::f32s; 2] {
+        let p = match &self.world_to_object {
+            None => position,
+            Some(m) => linear(simd, &m.matrix3, position) + V3::splat(simd, m.translation.into()),
+        };
         match self.mapping {
-            Mapping::Planar { u, v } => planar([u, v]),
-            Mapping::BoxFaces => planar(other_axes(self.to_object_normal(normal))),
-            Mapping::Sphere { center } => longitude_latitude(p - center),
-            Mapping::Axial { base, axis } if primitive == 0 => {
-                let from_base = p - base;
-                let [a, b] = plane_axes(axis).map(|side| from_base.dot(side));
-                Vec2::new(libm::atan2f(b, a) / TAU + 0.5, from_base.dot(axis))
+            Mapping::Planar { u, v } => planar(simd, p, [u, v]),
+            Mapping::BoxFaces => {
+                let normal = self.to_object_normals(simd, normal);
+                let (x, y, z) = (normal.x.abs(), normal.y.abs(), normal.z.abs());
+                let along_z = z.simd_gt(x.max(y));
+                let along_x = !along_z & !y.simd_gt(x);
+                [along_x.select(p.y, p.x), along_z.select(p.y, p.z)]
             }
-            Mapping::Axial { axis, .. } => planar(plane_axes(axis)),
-            Mapping::Vertex => own.unwrap_or(Vec2::ZERO),
+            Mapping::Sphere { center } => {
+                let d = p - V3::splat(simd, center);
+                let across = (d.x * d.x + d.z * d.z).sqrt();
+                [atan2::<S, S::f32s>(d.z, d.x) / TAU + 0.5, atan2::<S, S::f32s>(d.y, across) / PI + 0.5]
+            }
+            Mapping::Axial { base, axis } => {
+                let axes = plane_axes(axis);
+                let from_base = p - V3::splat(simd, base);
+                let [a, b] = planar(simd, from_base, axes);
+                let around = [atan2::<S, S::f32s>(b, a) / TAU + 0.5, from_base.dot(V3::splat(simd, axis))];
+                let caps = planar(simd, p, axes);
+                [sides.select(around[0], caps[0]), sides.select(around[1], caps[1])]
+            }
+            Mapping::Vertex => own,
         }
     }
 
-    /// A normal of the world in the object's own space; its length may change.
-    fn to_object_normal(&self, normal: Vec3) -> Vec3 {
-        self.world_to_object.map_or(normal, |m| Vec3::from(m.matrix3.inverse().transpose() * Vec3A::from(normal)))
+    /// Normals of the world in the object's own space; their lengths may change.
+    #[inline(always)]
+    fn to_object_normals<S: Simd>(&self, simd: S, normal: V3<S::f32s>) -> V3<S::f32s> {
+        match &self.world_to_object {
+            None => normal,
+            Some(m) => linear(simd, &m.matrix3.inverse().transpose(), normal),
+        }
     }
+}
+
+/// The same linear map of every lane.
+#[inline(always)]
+fn linear<S: Simd>(simd: S, m: &Mat3A, v: V3<S::f32s>) -> V3<S::f32s> {
+    let (x, y, z): (Vec3, Vec3, Vec3) = (m.x_axis.into(), m.y_axis.into(), m.z_axis.into());
+    V3::splat(simd, x).scale(v.x) + V3::splat(simd, y).scale(v.y) + V3::splat(simd, z).scale(v.z)
+}
+
+/// Coordinates along two axes.
+#[inline(always)]
+fn planar<S: Simd>(simd: S, p: V3<S::f32s>, [u, v]: [Vec3; 2]) -> [S::f32s; 2] {
+    [p.dot(V3::splat(simd, u)), p.dot(V3::splat(simd, v))]
 }
 
 /// The axes along which a plane of unit normal `n` is textured: on an axis-aligned one the two other coordinates in
@@ -94,10 +137,4 @@ fn other_axes(n: Vec3) -> [Vec3; 2] {
         1 => [Vec3::X, Vec3::Z],
         _ => [Vec3::X, Vec3::Y],
     }
-}
-
-/// Longitude / 2π and latitude / π from the south pole, of a direction of any length.
-fn longitude_latitude(d: Vec3) -> Vec2 {
-    let across = libm::sqrtf(d.x * d.x + d.z * d.z);
-    Vec2::new(libm::atan2f(d.z, d.x) / TAU + 0.5, libm::atan2f(d.y, across) / PI + 0.5)
 }

@@ -1,6 +1,9 @@
 //! Textures: images and checkers, looked up by surface coordinates.
 
-use glam::{Vec2, Vec3, Vec3A};
+use crate::math::V3;
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+use glam::Vec3;
 use std::sync::Arc;
 use std::sync::LazyLock;
 
@@ -32,52 +35,71 @@ pub enum Texture {
 }
 
 impl Texture {
-    /// The linear colour at surface coordinates `uv`.
-    pub fn sample(&self, uv: Vec2) -> Vec3 {
+    /// The linear colours at surface coordinates `u`, `v` of the lanes in the bit set `lanes`; others get anything.
+    #[inline(always)]
+    pub fn sample<S: Simd>(&self, simd: S, [u, v]: [S::f32s; 2], lanes: u64) -> V3<S::f32s> {
         match self {
-            Self::Checker { colors, size } => {
-                let sum = floor(uv.x / size) + floor(uv.y / size);
-                let odd = sum - 2.0 * floor(sum * 0.5) != 0.0;
-                colors[usize::from(odd)]
+            Self::Checker { colors: [even, odd], size } => {
+                let squares = 1.0 / size;
+                let sum = (u * squares).floor() + (v * squares).floor();
+                let is_even = sum.simd_eq((sum * 0.5).floor() * 2.0);
+                V3::select(is_even, V3::splat(simd, *even), V3::splat(simd, *odd))
             }
-            Self::Image(image) => image.sample(uv),
+            Self::Image(image) => image.sample(simd, u, v, lanes),
         }
     }
 }
 
 impl ImageTexture {
     /// Bilinear lookup with repetition, in linear light.
-    pub fn sample(&self, uv: Vec2) -> Vec3 {
-        let (left, right, across) = neighbours(uv.x / self.size, self.width);
-        let (bottom, top, up) = neighbours(uv.y / self.size, self.height);
+    #[inline(always)]
+    fn sample<S: Simd>(&self, simd: S, u: S::f32s, v: S::f32s, lanes: u64) -> V3<S::f32s> {
+        let one = S::f32s::splat(simd, 1.0);
+        let repetitions = 1.0 / self.size;
+        let (left, right, across) = neighbours(simd, u * repetitions, self.width);
+        let (bottom, top, up) = neighbours(simd, v * repetitions, self.height);
         // Rows are counted from the top, v from the bottom.
-        let row = |from_bottom: u32| (self.height - 1 - from_bottom) as usize * self.width as usize;
+        let (width, last) = (S::u32s::splat(simd, self.width), S::u32s::splat(simd, self.height - 1));
+        let [bottom, top] = [(last - bottom) * width, (last - top) * width];
+        let low = self.texels(simd, bottom + left, lanes).scale(one - across)
+            + self.texels(simd, bottom + right, lanes).scale(across);
+        let high = self.texels(simd, top + left, lanes).scale(one - across)
+            + self.texels(simd, top + right, lanes).scale(across);
+        low.scale(one - up) + high.scale(up)
+    }
+
+    /// The texels of the lanes in the bit set `lanes`, in linear light.
+    #[inline(always)]
+    fn texels<S: Simd>(&self, simd: S, indices: S::u32s, lanes: u64) -> V3<S::f32s> {
         let decode = srgb_table();
-        let texel = |row: usize, column: u32| {
-            let [r, g, b] = self.texels[row + column as usize];
-            Vec3A::new(decode[usize::from(r)], decode[usize::from(g)], decode[usize::from(b)])
-        };
-        let along = |row: usize| texel(row, left) * (1.0 - across) + texel(row, right) * across;
-        Vec3::from(along(row(bottom)) * (1.0 - up) + along(row(top)) * up)
+        let indices = indices.as_slice();
+        let mut found = V3::<S::f32s>::zero(simd);
+        let (x, y, z) = (found.x.as_mut_slice(), found.y.as_mut_slice(), found.z.as_mut_slice());
+        let mut left = lanes;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let [r, g, b] = self.texels[indices[lane] as usize];
+            (x[lane], y[lane], z[lane]) = (decode[usize::from(r)], decode[usize::from(g)], decode[usize::from(b)]);
+        }
+        found
     }
 }
 
 /// The two texels around coordinate `t` of a repeating row of `size` texels, and the share of the second.
-fn neighbours(t: f32, size: u32) -> (u32, u32, f32) {
-    let t = if t.is_finite() { t } else { 0.0 };
-    let position = (t - floor(t)) * size as f32 - 0.5;
-    let before = floor(position);
-    let wrap = |texel: f32| if texel < 0.0 { size - 1 } else { (texel as u32) % size };
-    (wrap(before), wrap(before + 1.0), position - before)
-}
-
-/// Rounds down. Inline on every processor, where `f32::floor` may be a call; numbers too large to have a fraction stay.
-fn floor(t: f32) -> f32 {
-    if t.abs() >= 8_388_608.0 {
-        return t;
-    }
-    let truncated = t as i32 as f32;
-    if truncated > t { truncated - 1.0 } else { truncated }
+#[inline(always)]
+fn neighbours<S: Simd>(simd: S, t: S::f32s, size: u32) -> (S::u32s, S::u32s, S::f32s) {
+    let zero = S::f32s::splat(simd, 0.0);
+    let finite = (t - t).simd_eq(zero);
+    let t = finite.select(t, zero);
+    let texels = size as f32;
+    let position = (t - t.floor()) * texels - 0.5;
+    let before = position.floor();
+    let after = before + 1.0;
+    let share = position - before;
+    let before = before.simd_lt(zero).select(S::f32s::splat(simd, texels - 1.0), before);
+    let after = after.simd_ge(S::f32s::splat(simd, texels)).select(zero, after);
+    (before.to_int(), after.to_int(), share)
 }
 
 /// Decodes one sRGB byte to linear light (IEC 61966-2-1), by a table made at first use.

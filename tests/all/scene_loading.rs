@@ -1,8 +1,11 @@
 //! Valid scene files: what they become.
 
 use crate::temporary::{Folder, load_objects, load_text};
-use glam::{Vec2, Vec3};
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+use glam::Vec3;
 use raywalk::geometry::Aabb;
+use raywalk::math::{SimdToken, dispatch};
 use raywalk::scene::light::{Falloff, LightKind};
 use raywalk::scene::material::{ColorSource, Model};
 use raywalk::scene::object::Mapping;
@@ -190,6 +193,11 @@ fn every_load_is_a_generation_of_its_own() {
 #[test]
 fn a_checker_starts_with_its_first_colour() {
     let scene = load_text(r#"{ "version": 1, "textures": { "t": { "checker": [1, 0], "size": 2 } } }"#).unwrap();
-    let at = |u, v| scene.textures[0].sample(Vec2::new(u, v)).x;
+    let at = |u, v| dispatch!(SimdToken::best(), simd => red_at(simd, &scene.textures[0], u, v));
     assert_eq!([at(0.5, 0.5), at(2.5, 0.5), at(2.5, 2.5), at(-0.5, 0.5)], [1.0, 0.0, 1.0, 0.0]);
+}
+
+/// The red that a texture holds at (u, v).
+fn red_at<S: Simd>(simd: S, texture: &Texture, u: f32, v: f32) -> f32 {
+    texture.sample(simd, [S::f32s::splat(simd, u), S::f32s::splat(simd, v)], 1).x[0]
 }

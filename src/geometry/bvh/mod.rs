@@ -1,8 +1,10 @@
 //! An eight-wide bounding volume hierarchy over blocks of primitives.
 
 mod build;
+mod cluster;
+mod reinsert;
 
-pub use build::build;
+pub use build::{LeafMembers, build};
 
 use super::{Aabb, PrimitiveKind};
 

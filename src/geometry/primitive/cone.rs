@@ -7,7 +7,7 @@
 //! cone's wall soon grows far beyond the cone, and along a needle most of the ray is far from the axis.
 
 use super::{Kernel, SurfacePoint, largest};
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -71,7 +71,8 @@ impl Kernel<9> for Cone {
     }
 
     #[inline(always)]
-    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 9], origin: V3<F>, direction: V3<F>, t_min: F) -> (F::Mask, F) {
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 9], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
+        let Rays { origin, direction, .. } = *rays;
         let middle = V3::new(fields[0], fields[1], fields[2]);
         let axis = V3::new(fields[3], fields[4], fields[5]);
         let [half_height, radius, slope] = [fields[6], fields[7], fields[8]];

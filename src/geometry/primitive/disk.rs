@@ -1,7 +1,7 @@
 //! Disks: `{ "type": "disk", "center": [0,0,0], "normal": [0,1,0], "radius": 1 }`, and the caps of cylinders and cones.
 
 use super::{Kernel, SurfacePoint, largest};
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
 use glam::Vec3;
@@ -23,7 +23,8 @@ impl Kernel<7> for Disk {
     }
 
     #[inline(always)]
-    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 7], origin: V3<F>, direction: V3<F>, t_min: F) -> (F::Mask, F) {
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 7], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
+        let Rays { origin, direction, .. } = *rays;
         let to_center = V3::new(fields[0], fields[1], fields[2]) - origin;
         let normal = V3::new(fields[3], fields[4], fields[5]);
         let t = normal.dot(to_center) / normal.dot(direction);

@@ -16,20 +16,21 @@ pub use plane::Plane;
 pub use sphere::Sphere;
 pub use triangle::Triangle;
 
-use super::Aabb;
+use super::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
 
-/// Calls `$callback!` with every primitive type: its kernel, its field count and the name of its blocks in
-/// [`Geometry`](super::Geometry). To add a primitive, add its file above and its line here.
+/// Calls `$callback!` with every primitive type: its kernel, its field count, the name of its blocks in
+/// [`Geometry`](super::Geometry), and how many numbers its [`Outline`](super::beam::Outline) has. To add a primitive,
+/// add its file above, its outline, and its line here.
 macro_rules! for_each_primitive {
     ($callback:ident) => {
         $callback! {
-            Sphere 4 spheres,
-            Triangle 10 triangles,
-            Disk 7 disks,
-            Cone 9 cones,
-            Plane 4 planes,
+            Sphere 4 spheres 6,
+            Triangle 10 triangles 19,
+            Disk 7 disks 11,
+            Cone 9 cones 9,
+            Plane 4 planes 9,
         }
     };
 }
@@ -55,9 +56,9 @@ pub trait Kernel<const N: usize> {
     /// The least box around the primitive; infinite for planes.
     fn bounds(fields: &[f32; N]) -> Aabb;
 
-    /// Distance to the first hit beyond `t_min` (exclusive) along the unit `direction`, where the mask is set.
+    /// Distance to the first hit beyond `t_min` (exclusive), where the mask is set.
     /// Elsewhere the distance is meaningless. Distances may come out infinite: callers compare with a finite limit.
-    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; N], origin: V3<F>, direction: V3<F>, t_min: F) -> (F::Mask, F);
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; N], rays: &Rays<F>, t_min: F) -> (F::Mask, F);
 
     /// The surface at distance `t`, for a ray that [`intersect`](Self::intersect) found to hit there.
     fn surface<S: Simd, F: Lanes<S>>(fields: &[F; N], origin: V3<F>, direction: V3<F>, t: F) -> SurfacePoint<F>;

@@ -1,7 +1,7 @@
 //! Infinite planes: `{ "type": "plane", "point": [0,-1,0], "normal": [0,1,0] }`.
 
 use super::{Kernel, SurfacePoint, largest};
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
 use glam::Vec3;
@@ -24,7 +24,8 @@ impl Kernel<4> for Plane {
     }
 
     #[inline(always)]
-    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 4], origin: V3<F>, direction: V3<F>, t_min: F) -> (F::Mask, F) {
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 4], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
+        let Rays { origin, direction, .. } = *rays;
         let normal = V3::new(fields[0], fields[1], fields[2]);
         let t = (fields[3] - normal.dot(origin)) / normal.dot(direction);
         (t.simd_gt(t_min), t)

@@ -4,7 +4,7 @@
 //! c = |C-O|² - r², it does not cancel for small or distant spheres (Haines et al., Ray Tracing Gems ch. 7, 2019).
 
 use super::{Kernel, SurfacePoint, largest};
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -70,8 +70,8 @@ impl Kernel<4> for Sphere {
     }
 
     #[inline(always)]
-    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 4], origin: V3<F>, direction: V3<F>, t_min: F) -> (F::Mask, F) {
-        Self::intersect_terms(&Self::origin_terms(fields, origin), direction, t_min)
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 4], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
+        Self::intersect_terms(&Self::origin_terms(fields, rays.origin), rays.direction, t_min)
     }
 
     #[inline(always)]

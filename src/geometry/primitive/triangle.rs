@@ -7,7 +7,7 @@
 //! corners' own depths by the edge functions, within the triangle's box.
 
 use super::{HIT_PADDING, Kernel, SurfacePoint, largest};
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -45,54 +45,41 @@ impl Triangle {
 
     /// Barycentric weights of the three stored corners, not yet divided by their sum.
     #[inline(always)]
-    fn weights<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], origin: V3<F>, direction: V3<F>) -> [F; 3] {
-        let [right, up] = Self::across(direction);
+    fn weights<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], rays: &Rays<F>) -> [F; 3] {
+        let Rays { origin, across: [right, up], .. } = *rays;
         let [a, b, c] = [corners[0] - origin, corners[1] - origin, corners[2] - origin];
         let [(ax, ay), (bx, by), (cx, cy)] =
             [(a.dot(right), a.dot(up)), (b.dot(right), b.dot(up)), (c.dot(right), c.dot(up))];
         [bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx]
     }
 
-    /// Two unit vectors across a ray's direction and across each other (Duff et al., JCGT 6(1), 2017).
-    #[inline(always)]
-    fn across<S: Simd, F: Lanes<S>>(direction: V3<F>) -> [V3<F>; 2] {
-        let V3 { x, y, z } = direction;
-        let one = F::splat(x.token(), 1.0);
-        let sign = one.copysign(z);
-        let a = -one / (sign + z);
-        let b = x * y * a;
-        [V3::new(one + sign * x * x * a, sign * b, -sign * x), V3::new(b, sign + y * y * a, -y)]
-    }
-
     /// How far along the ray each corner lies.
     #[inline(always)]
-    fn depths<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], origin: V3<F>, direction: V3<F>) -> [F; 3] {
+    fn depths<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], rays: &Rays<F>) -> [F; 3] {
         let [a, b, c] = *corners;
+        let Rays { origin, direction, .. } = *rays;
         [(a - origin).dot(direction), (b - origin).dot(direction), (c - origin).dot(direction)]
     }
 
     /// Where a ray enters and leaves the box around the corners, widened by [`HIT_PADDING`]. Of a triangle seen edge-on,
     /// or of a needle, the weights are all but rounding errors: what they say of the distance is held to this.
     #[inline(always)]
-    fn box_interval<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], origin: V3<F>, direction: V3<F>) -> (F, F) {
+    fn box_interval<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], rays: &Rays<F>) -> (F, F) {
         let [a, b, c] = *corners;
+        let Rays { origin, inverse, .. } = *rays;
         let padding = (largest(a).max(largest(b)).max(largest(c)) + largest(origin)) * HIT_PADDING;
-        let (near_x, far_x) = Self::slab([a.x, b.x, c.x], padding, origin.x, direction.x);
-        let (near_y, far_y) = Self::slab([a.y, b.y, c.y], padding, origin.y, direction.y);
-        let (near_z, far_z) = Self::slab([a.z, b.z, c.z], padding, origin.z, direction.z);
+        let (near_x, far_x) = Self::slab([a.x, b.x, c.x], padding, origin.x, inverse.x);
+        let (near_y, far_y) = Self::slab([a.y, b.y, c.y], padding, origin.y, inverse.y);
+        let (near_z, far_z) = Self::slab([a.z, b.z, c.z], padding, origin.z, inverse.z);
         (near_x.max(near_y).max(near_z), far_x.min(far_y).min(far_z))
     }
 
     /// [`box_interval`](Self::box_interval) along one axis.
     #[inline(always)]
-    fn slab<S: Simd, F: Lanes<S>>(corners: [F; 3], padding: F, origin: F, direction: F) -> (F, F) {
-        /// Its inverse is finite, so that nothing becomes a NaN.
-        const LEAST: f32 = 1e-30;
+    fn slab<S: Simd, F: Lanes<S>>(corners: [F; 3], padding: F, origin: F, inverse: F) -> (F, F) {
         let [a, b, c] = corners;
-        let least = F::splat(a.token(), LEAST);
-        let direction = direction.abs().simd_lt(least).select(least.copysign(direction), direction);
-        let to_min = (a.min(b).min(c) - padding - origin) / direction;
-        let to_max = (a.max(b).max(c) + padding - origin) / direction;
+        let to_min = (a.min(b).min(c) - padding - origin) * inverse;
+        let to_max = (a.max(b).max(c) + padding - origin) * inverse;
         (to_min.min(to_max), to_min.max(to_max))
     }
 
@@ -128,8 +115,8 @@ impl Triangle {
 
     /// Barycentric weights of the stored corners at the hit, summing to 1.
     #[inline(always)]
-    pub fn barycentric<S: Simd, F: Lanes<S>>(fields: &[F; 10], origin: V3<F>, direction: V3<F>) -> [F; 3] {
-        let [u, v, w] = Self::weights(&Self::corners(fields), origin, direction);
+    pub fn barycentric<S: Simd, F: Lanes<S>>(fields: &[F; 10], rays: &Rays<F>) -> [F; 3] {
+        let [u, v, w] = Self::weights(&Self::corners(fields), rays);
         let sum = u + v + w;
         [u / sum, v / sum, w / sum]
     }
@@ -141,9 +128,9 @@ impl Kernel<10> for Triangle {
     }
 
     #[inline(always)]
-    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 10], origin: V3<F>, direction: V3<F>, t_min: F) -> (F::Mask, F) {
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 10], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
         let corners = Self::corners(fields);
-        let [u, v, w] = Self::weights(&corners, origin, direction);
+        let [u, v, w] = Self::weights(&corners, rays);
         // Compared with zero, not by sign bits: -0.0 on an edge is a hit.
         let zero = F::splat(u.token(), 0.0);
         let front = u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero);
@@ -153,9 +140,9 @@ impl Kernel<10> for Triangle {
         if !inside.any_true() {
             return (inside, zero);
         }
-        let [depth_a, depth_b, depth_c] = Self::depths(&corners, origin, direction);
+        let [depth_a, depth_b, depth_c] = Self::depths(&corners, rays);
         let t = (u * depth_a + v * depth_b + w * depth_c) / sum;
-        let (near, far) = Self::box_interval(&corners, origin, direction);
+        let (near, far) = Self::box_interval(&corners, rays);
         let t = t.simd_lt(near).select(near, t);
         let t = t.simd_gt(far).select(far, t);
         (inside & near.simd_le(far) & t.simd_gt(t_min), t)

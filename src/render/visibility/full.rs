@@ -1,11 +1,11 @@
 //! `--visibility full`: a ray for every sample. The reference.
 
-use super::{Pass, Worker, shade_queue, trace_pixels};
+use super::{Pass, Worker, queue_tile, shade_queue};
 use crate::render::frame::Frame;
+use crate::render::tile::milliseconds_since;
+use crate::render::trace;
 use fearless_simd::Simd;
-
-/// Edge of the blocks in which pixels follow each other, so that the rays of a packet stay close together.
-const BLOCK: usize = 4;
+use std::time::Instant;
 
 pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
     find(simd, frame, pass, worker);
@@ -15,15 +15,8 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &
 
 /// Leaves the hits of all samples in `worker.rays`.
 pub(super) fn find<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
-    let mut pixels = std::mem::take(&mut worker.cells.pixels);
-    pixels.clear();
-    for top in (0..pass.height).step_by(BLOCK) {
-        for left in (0..pass.width).step_by(BLOCK) {
-            for y in top..(top + BLOCK).min(pass.height) {
-                pixels.extend((left..(left + BLOCK).min(pass.width)).map(|x| [x as u16, y as u16]));
-            }
-        }
-    }
-    trace_pixels(simd, frame, pass, &pixels, worker);
-    worker.cells.pixels = pixels;
+    let start = Instant::now();
+    queue_tile(simd, frame, pass, worker);
+    trace::primary_hits(simd, frame, worker);
+    worker.stats.stages_ms.visibility += milliseconds_since(start);
 }

@@ -1,8 +1,12 @@
 //! What each sample of a tile sees: one file for each way of finding out.
 
+mod certified;
 mod full;
+mod order;
 mod subsample;
 
+pub use certified::Levels;
+pub use order::Order;
 pub use subsample::Cells;
 
 use super::frame::Frame;
@@ -16,6 +20,7 @@ use std::time::Instant;
 /// Fills in the colours and what is seen, for all samples of a pass.
 pub(super) fn render_pass<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
     match frame.settings.visibility {
+        Visibility::Certified => certified::render(simd, frame, pass, worker),
         Visibility::Full => full::render(simd, frame, pass, worker),
         Visibility::Subsample => subsample::render(simd, frame, pass, worker),
     }
@@ -23,7 +28,10 @@ pub(super) fn render_pass<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, work
 
 /// Fills in what is seen, not the colours.
 pub(super) fn find_all<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
-    full::find(simd, frame, pass, worker);
+    match frame.settings.visibility {
+        Visibility::Certified => certified::find(simd, frame, pass, worker),
+        Visibility::Full | Visibility::Subsample => full::find(simd, frame, pass, worker),
+    }
     super::shade::store_seen(simd, frame, worker);
 }
 
@@ -37,10 +45,11 @@ fn trace_pixels<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, pixels: &[[u16
 
 /// Shades the hits in `worker.rays`, whose samples start from black.
 fn shade_queue<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
-    for at in 0..worker.rays.len() {
-        let sample = worker.rays.sample[at] as usize;
-        worker.color[sample] = [0.0; 3];
-        worker.seen[sample] = Seen { primitive: worker.rays.primitive[at], t: worker.rays.t[at], normal: [0.0; 3] };
+    if frame.keeps_seen {
+        for at in 0..worker.rays.len() {
+            let sample = worker.rays.sample[at] as usize;
+            worker.seen[sample] = Seen { primitive: worker.rays.primitive[at], t: worker.rays.t[at], normal: [0.0; 3] };
+        }
     }
     worker.shade_paths(simd, frame);
 }
@@ -51,6 +60,24 @@ fn queue_pixels<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, pixels: &[[u16
     let rays = &mut worker.rays;
     rays.clear();
     append_pixels(simd, frame, pass, pixels, media, rays);
+}
+
+/// Replaces `worker.rays` by rays from the eye through all pixels of the tile, in order.
+fn queue_tile<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
+    let media = worker.media.restart(frame.around_eye);
+    let Worker { rays, order, .. } = worker;
+    order.prepare(pass.width, pass.height);
+    rays.clear();
+    let first = rays.extend_from(frame.camera.eye, media, order.samples.len());
+    rays.sample[..order.samples.len()].copy_from_slice(&order.samples);
+    for (column, places, corner) in
+        [(&mut rays.direction.x, &order.x, pass.x), (&mut rays.direction.y, &order.y, pass.y)]
+    {
+        for (at, place) in column.iter_mut().zip(places) {
+            *at = corner as f32 + place;
+        }
+    }
+    aim(simd, frame, pass.offset, first, rays);
 }
 
 /// Appends rays from the eye through the given pixels.
@@ -64,7 +91,7 @@ fn append_pixels<S: Simd>(
 ) {
     let first = rays.extend_from(frame.camera.eye, media, pixels.len());
     for (at, &[x, y]) in (first..).zip(pixels) {
-        rays.sample[at] = super::tile::sample_at(x.into(), y.into());
+        rays.sample[at] = super::samples::sample_at(x.into(), y.into());
         // The direction's columns hold the picture coordinates until `aim` turns them into directions.
         rays.direction.x[at] = (pass.x + usize::from(x)) as f32;
         rays.direction.y[at] = (pass.y + usize::from(y)) as f32;

@@ -4,10 +4,12 @@
 use super::{Pass, Worker, append_pixels, shade_queue, trace_pixels};
 use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex};
 use crate::render::frame::Frame;
-use crate::render::tile::{GRID, Seen, milliseconds_since, pixel_at, sample_at};
+use crate::render::samples::{Colors, SAMPLES, pixel_at, sample_at};
+use crate::render::tile::{Seen, milliseconds_since};
 use crate::render::trace;
 use crate::settings::Fill;
 use fearless_simd::Simd;
+use std::ops::{Add, Mul, Sub};
 use std::time::Instant;
 
 /// A square of the grid, corners included, in the tile's own coordinates; cut off at the picture's border.
@@ -79,7 +81,7 @@ impl Cells {
     /// The grid's cells. Corners beyond the tile's last pixel but within the picture are those of the next tile.
     fn begin(&mut self, pass: &Pass, stride: usize) {
         self.done.clear();
-        self.done.resize(GRID * GRID, false);
+        self.done.resize(SAMPLES, false);
         self.current.clear();
         let far = |at: usize, size: usize, full: bool| (at + stride).min(if full { size } else { size - 1 }) as u16;
         for top in (0..pass.height).step_by(stride) {
@@ -155,8 +157,8 @@ fn fill_colors<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, cells: &mut Cel
 }
 
 /// Whether no channel of the corners' colours differs by more than the threshold.
-fn colors_match(cell: &Cell, color: &[[f32; 3]], threshold: f32) -> bool {
-    let corners = cell.corners().map(|[x, y]| color[sample_at(x.into(), y.into()) as usize]);
+fn colors_match(cell: &Cell, color: &Colors, threshold: f32) -> bool {
+    let corners = cell.corners().map(|[x, y]| color.get(sample_at(x.into(), y.into()) as usize));
     (0..3).all(|channel| {
         let values = corners.map(|c| c[channel]);
         let least = values.into_iter().fold(f32::INFINITY, f32::min);
@@ -170,11 +172,11 @@ fn interpolate(
     cell: &Cell,
     pass: &Pass,
     done: &mut [bool],
-    (color, seen): (&mut [[f32; 3]], &mut [Seen]),
+    (color, seen): (&mut Colors, &mut [Seen]),
     keeps_planes: bool,
 ) -> u64 {
     let corners = cell.corners().map(|[x, y]| sample_at(x.into(), y.into()) as usize);
-    let colors = corners.map(|corner| color[corner]);
+    let colors = corners.map(|corner| color.get(corner));
     let views = corners.map(|corner| seen[corner]);
     let step = |from: u16, to: u16| 1.0 / f32::from((to - from).max(1));
     let (across, down) = (step(cell.left, cell.right), step(cell.top, cell.bottom));
@@ -185,7 +187,7 @@ fn interpolate(
             continue;
         }
         let (u, v) = (f32::from(x - cell.left) * across, f32::from(y - cell.top) * down);
-        color[sample] = std::array::from_fn(|c| bilinear(colors.map(|color| color[c]), u, v));
+        color.set(sample, bilinear(colors, u, v));
         // Corners of finer cells nearby ask what this pixel sees; where, only planes ask.
         seen[sample].primitive = views[0].primitive;
         if keeps_planes {
@@ -201,7 +203,10 @@ fn interpolate(
 }
 
 /// Between the values at the corners left-top, right-top, left-bottom and right-bottom of a unit square.
-fn bilinear([a, b, c, d]: [f32; 4], u: f32, v: f32) -> f32 {
+fn bilinear<T>([a, b, c, d]: [T; 4], u: f32, v: f32) -> T
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>,
+{
     let (left, right) = (a + (c - a) * v, b + (d - b) * v);
     left + (right - left) * u
 }

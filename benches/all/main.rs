@@ -1,0 +1,16 @@
+//! All benchmarks, in one binary: one module a subject. `cargo bench -- kernels` runs one of them.
+//!
+//! Beams will be a module beside `kernels` and `traversal`: from an apex through a tile to its candidate list.
+
+mod builds;
+mod frames;
+mod kernels;
+mod rays;
+mod shapes;
+#[path = "../../examples/make_scenes/sphereflake.rs"]
+mod sphereflake;
+mod traversal;
+
+fn main() {
+    divan::main();
+}

@@ -1,0 +1,228 @@
+//! `--visibility certified`: what a block of pixels can see is proven once for all of them.
+//!
+//! The idea is beam tracing (Heckbert and Hanrahan, SIGGRAPH 1984) turned into a choice of candidates: a block's beam
+//! walks the tree once and lists the primitives that it can meet (compare the entry points of multi-level ray tracing,
+//! Reshetov, Soupikov and Hurley, SIGGRAPH 2005); smaller blocks sift that list, and rays are tested against the few
+//! that are left. What the rays see is then what they would see on their own, bit for bit.
+
+use super::order::Area;
+use super::{Pass, Worker, queue_tile, shade_queue};
+use crate::geometry::beam::{Beam, Candidates, Cover, Places};
+use crate::geometry::{ClosestHit, Rays, Search};
+use crate::math::V3;
+use crate::render::frame::Frame;
+use crate::render::queue::RayQueue;
+use crate::render::samples::{CELL, PACKET};
+use crate::render::tile::milliseconds_since;
+use crate::render::trace;
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+use std::ops::Range;
+use std::time::Instant;
+
+/// Candidates of a block, of one of its quarters, and of the cells of that one.
+#[derive(Debug, Default)]
+pub struct Levels {
+    block: Candidates,
+    half: Candidates,
+    cells: [Candidates; 4],
+    places: Places,
+}
+
+/// How far outside of a pixel's centre a beam begins, in pixels.
+const WIDENING: f32 = 0.01;
+
+pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
+    find(simd, frame, pass, worker);
+    shade_queue(simd, frame, worker);
+}
+
+/// Leaves the hits of all samples in `worker.rays`.
+pub(super) fn find<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
+    let start = Instant::now();
+    queue_tile(simd, frame, pass, worker);
+    worker.rays.pad();
+    worker.stats.stages_ms.visibility += milliseconds_since(start);
+    let mut levels = worker.levels.take().unwrap_or_default();
+    for block in 0..worker.order.blocks.len() {
+        find_block(simd, frame, pass, block, &mut levels, worker);
+    }
+    worker.levels = Some(levels);
+    // The last packet's spare lanes hold what was found for nobody.
+    worker.rays.clear_padding();
+}
+
+fn find_block<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    pass: &Pass,
+    block: usize,
+    levels: &mut Levels,
+    worker: &mut Worker,
+) {
+    let search = trace::eye_search(frame);
+    let start = Instant::now();
+    let nothing = Cover::nothing(&frame.projection);
+    let area = worker.order.blocks[block];
+    let listed = search.collect(simd, &beam(frame, pass, area), nothing, &mut levels.block, &mut worker.stack);
+    worker.stats.stages_ms.certificate += milliseconds_since(start);
+    if listed && levels.block.len() <= 1 {
+        return resolve_area(simd, frame, &search, &levels.block, &mut levels.places, area, worker);
+    }
+    for half in 4 * block..4 * block + 4 {
+        if worker.order.halves[half].pixels() > 0 {
+            find_half(simd, frame, pass, half, listed, levels, worker);
+        }
+    }
+}
+
+/// Finds the hits of half a block, whose own candidates are known if they are `listed`.
+fn find_half<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    pass: &Pass,
+    half: usize,
+    listed: bool,
+    levels: &mut Levels,
+    worker: &mut Worker,
+) {
+    let search = trace::eye_search(frame);
+    let start = Instant::now();
+    let Levels { block, half: own, cells, places } = levels;
+    let nothing = Cover::nothing(&frame.projection);
+    let area = worker.order.halves[half];
+    let own_beam = beam(frame, pass, area);
+    let complete = if listed {
+        own.filter(simd, search.geometry, block, &own_beam);
+        true
+    } else {
+        search.collect(simd, &own_beam, nothing, own, &mut worker.stack)
+    };
+    if complete && own.len() <= 1 {
+        worker.stats.stages_ms.certificate += milliseconds_since(start);
+        return resolve_area(simd, frame, &search, own, places, area, worker);
+    }
+    let mut known = [true; 4];
+    for (at, (cell, known)) in (4 * half..).zip(cells.iter_mut().zip(&mut known)) {
+        let area = worker.order.cells[at];
+        if area.pixels() == 0 {
+            continue;
+        }
+        let beam = beam(frame, pass, area);
+        if complete {
+            cell.filter(simd, search.geometry, own, &beam);
+        } else {
+            *known = search.collect(simd, &beam, nothing, cell, &mut worker.stack);
+        }
+    }
+    worker.stats.stages_ms.certificate += milliseconds_since(start);
+    for (at, (cell, known)) in (4 * half..).zip(cells.iter().zip(known)) {
+        let area = worker.order.cells[at];
+        if area.pixels() == 0 {
+            continue;
+        }
+        if !known {
+            let start = Instant::now();
+            trace::primary_range(simd, frame, area.start..area.start + area.pixels(), worker);
+            worker.stats.pixels.traced += area.pixels() as u64;
+            worker.stats.stages_ms.visibility += milliseconds_since(start);
+        } else if cell.len() >= FEW && area.pixels() == CELL * CELL {
+            resolve_packets(simd, frame, pass, &search, cell, places, area, worker);
+        } else {
+            resolve_area(simd, frame, &search, cell, places, area, worker);
+        }
+    }
+}
+
+/// The beam of an area's rays.
+fn beam<'a>(frame: &'a Frame<'_>, pass: &Pass, area: Area) -> Beam<'a> {
+    let camera = &frame.camera;
+    let across = |at: f32| ((pass.x + area.x) as f32 + at + pass.offset[0]) * 2.0 / camera.width as f32 - 1.0;
+    let down = |at: f32| 1.0 - ((pass.y + area.y) as f32 + at + pass.offset[1]) * 2.0 / camera.height as f32;
+    let (right, bottom) = ((area.width - 1) as f32 + WIDENING, (area.height - 1) as f32 + WIDENING);
+    let [half_width, half_height] = frame.half_picture;
+    let x = [across(-WIDENING) * half_width, across(right) * half_width];
+    let y = [down(bottom) * half_height, down(-WIDENING) * half_height];
+    Beam::new(&frame.projection, x, y).beyond(camera.near)
+}
+
+/// Tests an area's rays against all that they can meet.
+fn resolve_area<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    search: &Search<'_>,
+    candidates: &Candidates,
+    places: &mut Places,
+    area: Area,
+    worker: &mut Worker,
+) {
+    let start = Instant::now();
+    let pixels = area.pixels();
+    if candidates.is_certain() {
+        worker.stats.pixels.certified += pixels as u64;
+    } else {
+        worker.stats.pixels.resolved += pixels as u64;
+    }
+    places.take_all(candidates);
+    simd.vectorize(
+        #[inline(always)]
+        || resolve_range(simd, frame, search, places, area.start..area.start + pixels, &mut worker.rays),
+    );
+    worker.stats.stages_ms.visibility += milliseconds_since(start);
+}
+
+/// Candidates of a cell from which on it pays to look which of them its packets can meet.
+const FEW: usize = 3;
+
+/// Tests a whole cell's rays packet by packet, each against what it can meet.
+fn resolve_packets<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    pass: &Pass,
+    search: &Search<'_>,
+    candidates: &Candidates,
+    places: &mut Places,
+    area: Area,
+    worker: &mut Worker,
+) {
+    let start = Instant::now();
+    worker.stats.pixels.resolved += area.pixels() as u64;
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for packet in 0..(CELL / PACKET) * (CELL / PACKET) {
+                let square = Area {
+                    x: area.x + packet % 2 * PACKET,
+                    y: area.y + packet / 2 * PACKET,
+                    width: PACKET,
+                    height: PACKET,
+                    start: area.start + packet * PACKET * PACKET,
+                };
+                places.select(simd, candidates, &beam(frame, pass, square));
+                let range = square.start..square.start + square.pixels();
+                resolve_range(simd, frame, search, places, range, &mut worker.rays);
+            }
+        },
+    );
+    worker.stats.stages_ms.visibility += milliseconds_since(start);
+}
+
+/// Tests some of the rays against the primitives at the given places.
+#[inline(always)]
+fn resolve_range<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    search: &Search<'_>,
+    places: &Places,
+    range: Range<usize>,
+    rays: &mut RayQueue,
+) {
+    let eye = V3::splat(simd, frame.camera.eye);
+    let (near, far) = (S::f32s::splat(simd, frame.camera.near), S::f32s::splat(simd, frame.camera.far));
+    for at in range.step_by(S::f32s::LEN) {
+        let packet = Rays::new(eye, rays.direction.load(simd, at));
+        let mut visitor = ClosestHit::new(simd, near, far);
+        search.resolve(simd, places, &packet, &mut visitor);
+        trace::store_hits(simd, &visitor, rays, at);
+    }
+}
