@@ -102,9 +102,14 @@ pub fn any(random: &mut Random) -> Maker {
     random.pick(kind)
 }
 
+/// A size that reaches a little too far, or just not.
+fn hardly_more(random: &mut Random, size: f64) -> f64 {
+    size * random.pick(&[1.0, 1.0 + 1e-7, 1.0 + 1e-6, 1.0 - 1e-7])
+}
+
 fn tangent_sphere(random: &mut Random, touch: &Touch) -> Value {
     let center = touch.between(random) + touch.aside();
-    json!({ "type": "sphere", "center": triple(center), "radius": touch.size })
+    json!({ "type": "sphere", "center": triple(center), "radius": hardly_more(random, touch.size) })
 }
 
 fn tangent_sphere_to_one_ray(random: &mut Random, touch: &Touch) -> Value {
@@ -203,7 +208,7 @@ fn tangent_disk(random: &mut Random, touch: &Touch) -> Value {
     let center = touch.between(random) + touch.aside();
     let up = touch.directions[0].cross(touch.across);
     let normal = touch.directions[0] + up * random.pick(&[0.0, 0.0, 1.0, 1e3]);
-    json!({ "type": "disk", "center": triple(center), "normal": triple(normal), "radius": touch.size })
+    json!({ "type": "disk", "center": triple(center), "normal": triple(normal), "radius": hardly_more(random, touch.size) })
 }
 
 fn edge_on_disk(random: &mut Random, touch: &Touch) -> Value {
@@ -216,6 +221,7 @@ fn tangent_cylinder(random: &mut Random, touch: &Touch) -> Value {
     let radius = if random.chance(0.4) { touch.pixel * random.magnitude(-5.0, 0.0) } else { touch.size };
     let aside = touch.across * radius * random.pick(&[1.0, 1.0, 1.0, 0.0]);
     let [a, b] = touch.edge(random).map(|end| triple(end + aside));
+    let radius = hardly_more(random, radius);
     json!({ "type": "cylinder", "base": a, "top": b, "radius": radius, "capped": random.chance(0.5) })
 }
 

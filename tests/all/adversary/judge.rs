@@ -21,8 +21,11 @@ pub struct Judge {
 }
 
 impl Judge {
-    pub fn new() -> Self {
-        Self { scratch: Scratch::new(), film: film((1, 1)) }
+    /// A judge of beams with a share of their margins.
+    pub fn new(beam_margin: f32) -> Self {
+        let mut scratch = Scratch::new();
+        scratch.beam_margin = beam_margin;
+        Self { scratch, film: film((1, 1)) }
     }
 
     /// What is wrong with the picture of a scene file under some settings. `None` also where the file does not load.
@@ -38,8 +41,7 @@ impl Judge {
         let mut expected: Option<(Supersample, PictureBits)> = None;
         for candidate @ (name, settings) in candidates {
             if expected.as_ref().is_none_or(|(supersample, _)| *supersample != settings.supersample) {
-                let judge = Settings { supersample: settings.supersample, ..brute_force() };
-                match self.render(scene, &judge) {
+                match self.render(scene, &brute_force(settings)) {
                     Ok(picture) => {
                         let wrong = picture.not_a_number();
                         if wrong > 0 {
@@ -68,18 +70,24 @@ impl Judge {
         let camera = &scene.cameras[0].camera;
         let rendered = catch_unwind(AssertUnwindSafe(|| render_frame(scene, camera, settings, scratch, film)));
         if rendered.is_err() {
-            *self = Self::new();
+            *self = Self::new(self.scratch.beam_margin);
             return Err("it panicked".to_owned());
         }
         Ok(PictureBits::of(&self.film))
     }
 }
 
-/// Every pixel, every primitive, one thread.
-pub fn brute_force() -> Settings {
-    let mut settings = Settings { bvh: false, threads: 1, ..Settings::exact() };
-    set(&mut settings, "visibility", "full");
-    settings
+/// Every pixel, every primitive, one thread; the picture of `settings` else.
+fn brute_force(settings: &Settings) -> Settings {
+    let mut judge = Settings {
+        bvh: false,
+        threads: 1,
+        supersample: settings.supersample,
+        shadows: settings.shadows,
+        ..Settings::exact()
+    };
+    set(&mut judge, "visibility", "full");
+    judge
 }
 
 fn set(settings: &mut Settings, name: &str, value: &str) {

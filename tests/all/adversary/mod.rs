@@ -23,6 +23,7 @@ use crate::temporary::load_text;
 use families::{FAMILIES, Family};
 use judge::Judge;
 use raywalk::scene::{LoadOptions, load};
+use raywalk::settings::Settings;
 use serde_json::{Value, json};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
@@ -44,7 +45,7 @@ struct Findings {
 
 /// Tries scenes of a family: of fixed seeds, then of fresh ones until `end`.
 fn attack(family: &Family, first_seed: u64, end: Option<Instant>) -> Findings {
-    let mut judge = Judge::new();
+    let mut judge = Judge::new(1.0);
     let mut findings = Findings::default();
     for seed in first_seed.. {
         let over = end.map_or(seed == first_seed + family.scenes, |end| Instant::now() >= end);
@@ -131,11 +132,44 @@ fn scenes_that_failed_once_do_not_again() {
     for entry in std::fs::read_dir(regressions()).unwrap() {
         let path = entry.unwrap().path();
         let scene = load(&path, &LoadOptions::default()).unwrap();
-        for (_, complaint) in Judge::new().complaints(&scene, &judge::all_candidates()) {
+        for (_, complaint) in Judge::new(1.0).complaints(&scene, &judge::all_candidates()) {
             failures.push(format!("{}: {complaint}", path.display()));
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Types of objects that are left alone on a stage, one row a kind of margin. None: all of them, and what is wrong is
+/// wrong about shadows.
+const KINDS: [(&str, &[&str]); 8] = [
+    ("spheres", &["sphere"]),
+    ("triangles", &["triangle", "rectangle", "mesh"]),
+    ("boxes", &["box"]),
+    ("disks", &["disk"]),
+    ("cones", &["cone", "cylinder"]),
+    ("planes", &["plane"]),
+    ("rivals", &["plane", "disk", "triangle", "rectangle", "sphere"]),
+    ("shadows", &[]),
+];
+
+#[test]
+fn margins_that_are_missing_are_noticed() {
+    let exact = (String::new(), Settings { threads: 1, ..Settings::exact() });
+    let no_shadows = (String::new(), Settings { shadows: false, ..exact.1.clone() });
+    for (name, kinds) in KINDS {
+        let (number, family) = FAMILIES.iter().enumerate().find(|(_, family)| family.name == name).unwrap();
+        let mut judge = Judge::new(0.0);
+        let mut noticed = |seed: u64| {
+            let mut file = families::compose(family, &mut Random::new(seed));
+            if let (Some(objects), false) = (file["objects"].as_array_mut(), kinds.is_empty()) {
+                objects.retain(|object| kinds.iter().any(|kind| object["type"] == *kind));
+            }
+            let primary = judge.complaint(&file, if kinds.is_empty() { &no_shadows } else { &exact }).is_some();
+            primary != kinds.is_empty() && judge.complaint(&file, &exact).is_some()
+        };
+        let first = (number as u64) << 32;
+        assert!((first..first + family.scenes).any(&mut noticed), "{name}: nothing is wrong without margins");
+    }
 }
 
 #[test]

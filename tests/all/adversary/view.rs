@@ -34,8 +34,9 @@ pub struct View {
 const SIZES: [(u32, u32); 10] =
     [(67, 35), (130, 97), (64, 64), (65, 33), (33, 66), (96, 40), (17, 9), (128, 64), (40, 72), (1, 1)];
 
-/// Common fields of view and the ends of what there is. That of 90 degrees has exact picture coordinates.
-const FIELDS: [f32; 10] = [90.0, 90.0, 60.0, 45.0, 20.0, 120.0, 170.0, 1.0, 0.01, 0.001];
+/// Common fields of view and the ends of what there is. That of 90 degrees has exact picture coordinates; in the
+/// narrowest, pixels are no farther apart than directions can be told from each other.
+const FIELDS: [f32; 12] = [90.0, 90.0, 60.0, 45.0, 20.0, 120.0, 170.0, 1.0, 0.1, 0.01, 0.001, 1e-4];
 
 /// Blocks of which pixels may be the border.
 const BLOCKS: [u32; 5] = [64, 32, 16, 8, 4];
@@ -93,24 +94,27 @@ impl View {
         self.frame().up.as_dvec3().length() * 2.0 / f64::from(self.size.1)
     }
 
-    /// A column or row where blocks of pixels meet: a border of theirs or the centre of the first or last pixel,
-    /// exactly or all but.
-    fn border(random: &mut Random, extent: u32) -> f64 {
+    /// A column or row where blocks of pixels meet: the centre of the last pixel of one or the first of the next,
+    /// or, not `centred`, also their border, or all but that.
+    fn border(random: &mut Random, extent: u32, centred: bool) -> f64 {
         let block = random.pick(&BLOCKS);
         let at = match random.below(8) {
-            0 => f64::from(extent) / 2.0,
+            0 => f64::from(extent / 2),
             1 => f64::from(extent),
             2 => random.below(extent as usize) as f64,
             _ => f64::from(random.below((extent / block) as usize + 1) as u32 * block),
         };
-        let off = random.pick(&[0.5, -0.5, 0.0]);
-        let nudge = if random.chance(0.5) { 0.0 } else { random.sign() * random.magnitude(-7.0, -1.0) };
-        at + off + nudge
+        if centred {
+            return at + random.pick(&[0.5, -0.5]);
+        }
+        let nudge = if random.chance(0.3) { 0.0 } else { random.sign() * random.magnitude(-7.0, -1.0) };
+        at + random.pick(&[0.5, -0.5, 0.0]) + nudge
     }
 
-    /// A place where a column and a row of borders meet.
+    /// A place where a column and a row of borders meet; most often a pixel's centre.
     pub fn corner(&self, random: &mut Random) -> DVec2 {
-        DVec2::new(Self::border(random, self.size.0), Self::border(random, self.size.1))
+        let centred = random.chance(0.7);
+        DVec2::new(Self::border(random, self.size.0, centred), Self::border(random, self.size.1, centred))
     }
 
     /// Two places of the picture: on a column or a row of borders, or between two corners of blocks.
