@@ -163,7 +163,8 @@ impl Outline<10, TRIANGLE> for Triangle {
         // Seen from nearly within its plane the triangle has no sides: its bounds alone decide.
         let scale = certain.select(one.copysign(turned) / side_margin, zero);
         let [p, q, r] = [times(sides[0], scale), times(sides[1], scale), times(sides[2], scale)];
-        let nearest = choose(certain, nearest, no_nearer_than(nearest_z - slack * 2.0, beam));
+        // Nor does its kernel then find more of the distance than that it lies within the triangle's box.
+        let nearest = choose(certain, nearest, [zero, zero, F::splat(simd, NEAREST)]);
         [
             bounds[0],
             bounds[1],

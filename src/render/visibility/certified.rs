@@ -139,10 +139,11 @@ fn beam<'a>(frame: &'a Frame<'_>, pass: &Pass, area: Area) -> Beam<'a> {
     let camera = &frame.camera;
     let across = |at: f32| ((pass.x + area.x) as f32 + at + pass.offset[0]) * 2.0 / camera.width as f32 - 1.0;
     let down = |at: f32| 1.0 - ((pass.y + area.y) as f32 + at + pass.offset[1]) * 2.0 / camera.height as f32;
-    let (right, bottom) = ((area.width - 1) as f32 + WIDENING, (area.height - 1) as f32 + WIDENING);
+    let widening = WIDENING * frame.beam_margin;
+    let (right, bottom) = ((area.width - 1) as f32 + widening, (area.height - 1) as f32 + widening);
     let [half_width, half_height] = frame.half_picture;
-    let x = [across(-WIDENING) * half_width, across(right) * half_width];
-    let y = [down(bottom) * half_height, down(-WIDENING) * half_height];
+    let x = [across(-widening) * half_width, across(right) * half_width];
+    let y = [down(bottom) * half_height, down(-widening) * half_height];
     Beam::new(&frame.projection, x, y).beyond(camera.near)
 }
 

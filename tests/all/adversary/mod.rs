@@ -1,0 +1,185 @@
+//! An adversary of every shortcut: scenes and cameras made so that many pixels are decided within rounding errors of
+//! the wrong answer, compared bit for bit with brute force.
+//!
+//! It knows where blocks of pixels meet (`view`) and puts outlines exactly there (`graze`), as seen by the eye, by a
+//! light or in a mirror; it puts things all but in the same place (`families`), and the eye where a tracer divides by
+//! nothing (`aimed`). Scenes are files for the public loader. One that fails is shrunk and written to a file, whose
+//! `comment` says what differed; files in `tests/regressions` are tried at every run.
+//!
+//! A normal run tries a fixed number of scenes, the same ones on every machine. `RAYWALK_FUZZ=SECONDS` goes on for so
+//! long with fresh ones; `RAYWALK_KEEP=1` writes failures to `tests/regressions` instead of the temporary folder.
+
+mod aimed;
+mod families;
+mod graze;
+mod judge;
+mod receiver;
+mod shrink;
+mod stage;
+mod view;
+
+use crate::random::Random;
+use crate::temporary::load_text;
+use families::{FAMILIES, Family};
+use judge::Judge;
+use raywalk::scene::{LoadOptions, load};
+use raywalk::settings::Settings;
+use serde_json::{Value, json};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::PathBuf;
+use std::time::{Duration, Instant, SystemTime};
+
+/// Smaller scenes that are tried to shrink one failure.
+const SHRINKING: usize = 1500;
+/// Failures of a family after which it is given up.
+const ENOUGH: usize = 3;
+
+/// What came of some scenes.
+#[derive(Default)]
+struct Findings {
+    tried: u32,
+    /// Files that the loader refused, such as those where rounding left nothing of a cylinder.
+    refused: u32,
+    failures: Vec<String>,
+}
+
+/// Tries scenes of a family: of fixed seeds, then of fresh ones until `end`.
+fn attack(family: &Family, first_seed: u64, end: Option<Instant>) -> Findings {
+    let mut judge = Judge::new(1.0);
+    let mut findings = Findings::default();
+    for seed in first_seed.. {
+        let over = end.map_or(seed == first_seed + family.scenes, |end| Instant::now() >= end);
+        if over || findings.failures.len() >= ENOUGH {
+            break;
+        }
+        let mut random = Random::new(seed);
+        let file = families::compose(family, &mut random);
+        let Ok(scene) = load_text(file.to_string()) else {
+            findings.refused += 1;
+            continue;
+        };
+        findings.tried += 1;
+        let candidates = judge::candidates(&mut random);
+        if let Some((candidate, _)) = judge.complaints(&scene, &candidates).pop() {
+            findings.failures.push(report(&mut judge, family.name, seed, file, candidate));
+        }
+    }
+    findings
+}
+
+/// Shrinks a failure and writes it down; says where.
+fn report(judge: &mut Judge, family: &str, seed: u64, file: Value, candidate: &judge::Named) -> String {
+    let mut small = shrink::shrink(file, SHRINKING, &mut |file| judge.complaint(file, candidate).is_some());
+    let complaint = judge.complaint(&small, candidate).unwrap_or_else(|| "failed once, and never again".to_owned());
+    let mut hasher = DefaultHasher::new();
+    small.to_string().hash(&mut hasher);
+    small["comment"] = json!(format!("{family}: {complaint}"));
+    let keep = std::env::var_os("RAYWALK_KEEP").is_some();
+    let folder = if keep { regressions() } else { PathBuf::from(env!("CARGO_TARGET_TMPDIR")) };
+    let path = folder.join(format!("{:016x}.json", hasher.finish()));
+    let written = std::fs::write(&path, format!("{small:#}\n"));
+    let place = written.map_or_else(|error| error.to_string(), |()| path.display().to_string());
+    format!("{family}, seed {seed}, {complaint}: {place}")
+}
+
+fn regressions() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/regressions")
+}
+
+/// How long to look for failures, where that was asked for.
+fn asked_for() -> Option<Duration> {
+    let seconds = std::env::var("RAYWALK_FUZZ").ok()?;
+    Some(Duration::from_secs_f64(seconds.parse().expect("RAYWALK_FUZZ is a number of seconds")))
+}
+
+#[test]
+fn no_scene_shows_another_picture_than_brute_force() {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let fuzz = asked_for();
+    let fresh = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos() as u64);
+    let all: Vec<Findings> = std::thread::scope(|scope| {
+        let worker = |first: usize| {
+            let families = FAMILIES.iter().enumerate().skip(first).step_by(threads);
+            let share = fuzz.map(|time| time / FAMILIES.len().div_ceil(threads) as u32);
+            families
+                .map(|(number, family)| {
+                    let end = share.map(|share| Instant::now() + share);
+                    let seed = if end.is_some() { fresh } else { 0 };
+                    let start = Instant::now();
+                    let found = attack(family, seed.wrapping_add((number as u64) << 32), end);
+                    let seconds = start.elapsed().as_secs_f64();
+                    println!(
+                        "{}: {} scenes, {} refused, {seconds:.1} s, seed {seed}",
+                        family.name, found.tried, found.refused
+                    );
+                    found
+                })
+                .collect::<Vec<_>>()
+        };
+        let workers: Vec<_> = (0..threads).map(|first| scope.spawn(move || worker(first))).collect();
+        workers.into_iter().flat_map(|worker| worker.join().unwrap()).collect()
+    });
+    let failures: Vec<&str> = all.iter().flat_map(|found| &found.failures).map(String::as_str).collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    for (family, found) in FAMILIES.iter().zip(&all) {
+        assert!(found.refused < found.tried, "{}: most scenes do not load", family.name);
+    }
+}
+
+#[test]
+fn scenes_that_failed_once_do_not_again() {
+    let mut failures = Vec::new();
+    for entry in std::fs::read_dir(regressions()).unwrap() {
+        let path = entry.unwrap().path();
+        let scene = load(&path, &LoadOptions::default()).unwrap();
+        for (_, complaint) in Judge::new(1.0).complaints(&scene, &judge::all_candidates()) {
+            failures.push(format!("{}: {complaint}", path.display()));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Types of objects that are left alone on a stage, one row a kind of margin. None: all of them, and what is wrong is
+/// wrong about shadows.
+const KINDS: [(&str, &[&str]); 8] = [
+    ("spheres", &["sphere"]),
+    ("triangles", &["triangle", "rectangle", "mesh"]),
+    ("boxes", &["box"]),
+    ("disks", &["disk"]),
+    ("cones", &["cone", "cylinder"]),
+    ("planes", &["plane"]),
+    ("rivals", &["plane", "disk", "triangle", "rectangle", "sphere"]),
+    ("shadows", &[]),
+];
+
+#[test]
+fn margins_that_are_missing_are_noticed() {
+    let exact = (String::new(), Settings { threads: 1, ..Settings::exact() });
+    let no_shadows = (String::new(), Settings { shadows: false, ..exact.1.clone() });
+    for (name, kinds) in KINDS {
+        let (number, family) = FAMILIES.iter().enumerate().find(|(_, family)| family.name == name).unwrap();
+        let mut judge = Judge::new(0.0);
+        let mut noticed = |seed: u64| {
+            let mut file = families::compose(family, &mut Random::new(seed));
+            if let (Some(objects), false) = (file["objects"].as_array_mut(), kinds.is_empty()) {
+                objects.retain(|object| kinds.iter().any(|kind| object["type"] == *kind));
+            }
+            let primary = judge.complaint(&file, if kinds.is_empty() { &no_shadows } else { &exact }).is_some();
+            primary != kinds.is_empty() && judge.complaint(&file, &exact).is_some()
+        };
+        let first = (number as u64) << 32;
+        assert!((first..first + family.scenes).any(&mut noticed), "{name}: nothing is wrong without margins");
+    }
+}
+
+#[test]
+fn shrinking_leaves_what_fails() {
+    let mut random = Random::new(1);
+    let mut file = families::compose(&FAMILIES[2], &mut random);
+    file["objects"] = json!([{ "type": "sphere", "center": [1.25, 2.5, 3.5], "radius": 7 }, { "type": "plane" }, 3, 4]);
+    let small = shrink::shrink(file, SHRINKING, &mut |file| {
+        file["objects"].as_array().is_some_and(|all| all.iter().any(|object| object["center"][0].as_f64() >= Some(1.2)))
+    });
+    assert_eq!(small["objects"], json!([{ "center": [1.2, 0.0, 0.0] }]));
+    assert!(small.get("lights").is_none() && small.get("materials").is_none());
+}
