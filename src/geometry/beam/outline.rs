@@ -138,14 +138,14 @@ impl Outline<10, TRIANGLE> for Triangle {
         let normal = to_b.cross(to_c);
         let longest_squared = to_b.dot(to_b).max(to_c.dot(to_c)).max(b_to_c.dot(b_to_c));
         let longest = longest_squared.sqrt();
-        // A hit is off by rounding errors of projected corners, which a needle's small area multiplies; and beyond
-        // the triangle's own box no kernel sees a hit, so that distances from corners are at most twice the longest side.
-        let side_margin = (longest + slack) * slack * (12.0 * beam.longest());
+        // The kernel's edge functions are off by the rounding of projected corners times their distance from the ray, and
+        // beyond the triangle's own box it sees no hit: that is at most 80 rounding errors, of the 100 that slack is.
+        let side_margin = (longest + slack) * slack * beam.longest();
         let (sides, turned, certain, nearest, farthest);
         if projection.parallel {
             sides = [side(to_b, a), side(b_to_c, b), side(-to_c, c)];
             turned = normal.z;
-            certain = turned.abs().simd_gt(slack * longest * CERTAIN);
+            certain = turned.abs().simd_gt((slack * longest * CERTAIN).max(side_margin * 3.0));
             let (slope_x, slope_y) = (normal.x / normal.z, normal.y / normal.z);
             let off = slack * longest_squared * 2.0 / turned.abs();
             let level = -(a.z + slope_x * a.x + slope_y * a.y);
@@ -154,7 +154,9 @@ impl Outline<10, TRIANGLE> for Triangle {
         } else {
             sides = [form(a.cross(to_b)), form(b.cross(b_to_c)), form(to_c.cross(a))];
             turned = normal.dot(a);
-            certain = turned.abs().simd_gt(slack * longest_squared * CERTAIN);
+            // The sides' sum is at least three margins: where one is outside for sure, another is inside for sure.
+            let least_sum = side_margin * farthest_z * 3.0;
+            certain = turned.abs().simd_gt((slack * longest_squared * CERTAIN).max(least_sum));
             let off = slack * longest_squared * 2.0 / turned.abs();
             let plane = times([normal.x, normal.y, normal.z], one / turned);
             nearest = times(plane, one + off);
@@ -206,7 +208,7 @@ impl Outline<10, TRIANGLE> for Triangle {
 
     #[inline(always)]
     fn is_passed_by<S: Simd, F: Lanes<S>>(outline: &[F; TRIANGLE], rays: &Points<F>, limit: F) -> F::Mask {
-        // Twice the margin: a ray's q is itself off by less than one.
+        // Twice the margin: a shadow ray starts a little beside the line from its surface to the light.
         let [_, _, _, _, nx, ny, nz, _, _, _, px, py, pz, qx, qy, qz, rx, ry, rz] = *outline;
         let least = rays.value(px, py, pz).min(rays.value(qx, qy, qz)).min(rays.value(rx, ry, rz));
         least.simd_lt(-2.0) | rays.is_too_deep([nx, ny, nz], limit)
