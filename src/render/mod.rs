@@ -7,6 +7,7 @@
 mod absorption;
 mod brdf;
 mod direct;
+mod extent;
 pub mod film;
 mod frame;
 mod gather;
@@ -14,6 +15,7 @@ mod inside;
 mod leave;
 mod materials;
 mod media;
+mod mirror;
 pub mod plan;
 mod queue;
 mod resolve;

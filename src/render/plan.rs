@@ -3,7 +3,7 @@
 use super::tables::{FlatMaterial, Tables};
 use crate::geometry::PrimitiveKind;
 use crate::scene::Scene;
-use crate::settings::{Settings, SphereCache};
+use crate::settings::{Settings, SphereCache, Visibility};
 use glam::Vec3;
 
 /// What a frame runs. Made once a frame; nothing below asks settings or scene again.
@@ -19,6 +19,8 @@ pub struct Plan {
     pub coloured_shadows: bool,
     /// Trace mirror rays.
     pub reflections: bool,
+    /// Look at what flat mirrors show with beams from the mirrored eye.
+    pub flat_mirrors: bool,
     /// Trace refracted rays.
     pub refractions: bool,
     /// Keep track of the bodies that rays are inside of.
@@ -59,6 +61,7 @@ impl Plan {
             shadows: settings.shadows && (!scene.headlight || reflections || refractions),
             coloured_shadows: !tables.opaque.is_empty(),
             reflections,
+            flat_mirrors: reflections && tables.flat_mirrors && settings.visibility == Visibility::Certified,
             refractions,
             media: !tables.transparent_bodies.is_empty(),
             absorption: tables.transparent_bodies.iter().any(|&object| absorbs(object)),
@@ -114,6 +117,11 @@ impl Plan {
                 self.reflections,
                 format!("reflections: on, some material mirrors; paths of up to {} rays", self.depth),
                 "reflections: off, nothing mirrors (or they were switched off)",
+            ),
+            say(
+                self.flat_mirrors,
+                "flat mirrors: on, blocks of what they show are certified from the mirrored eye".to_owned(),
+                "flat mirrors: off, nothing flat mirrors (or visibility is not certified)",
             ),
             say(
                 self.refractions,

@@ -118,6 +118,8 @@ pub struct RayQueue {
     pub sample: Vec<u32>,
     /// The bodies it starts in.
     pub media: Vec<u32>,
+    /// The flat primitive that mirrored it, or [`NO_PRIMITIVE`]; only of rays that follow from others.
+    pub source: Vec<u32>,
     /// Distance of the hit; its limit on a miss.
     pub t: Vec<f32>,
     /// The primitive hit, or [`NO_PRIMITIVE`].
@@ -146,6 +148,7 @@ impl RayQueue {
             }
             self.sample.resize(room, 0);
             self.media.resize(room, 0);
+            self.source.resize(room, NO_PRIMITIVE);
             self.t.resize(room, 0.0);
             self.primitive.resize(room, NO_PRIMITIVE);
         }
@@ -172,8 +175,7 @@ impl RayQueue {
         origin: V3<S::f32s>,
         direction: V3<S::f32s>,
         weight: V3<S::f32s>,
-        sample: S::u32s,
-        media: S::u32s,
+        [sample, media, source]: [S::u32s; 3],
     ) {
         let at = self.len;
         self.origin.put::<S>(at, mask, origin);
@@ -181,6 +183,7 @@ impl RayQueue {
         self.weight.put::<S>(at, mask, weight);
         put_numbers::<S>(&mut self.sample, at, mask, sample);
         put_numbers::<S>(&mut self.media, at, mask, media);
+        put_numbers::<S>(&mut self.source, at, mask, source);
         self.len += count::<S>(mask);
     }
 

@@ -8,6 +8,7 @@ use super::media::{Media, MediaList, OUTSIDE};
 use super::queue::{MOST_LANES, RayQueue};
 use super::stats::RayCounts;
 use super::tables::Row;
+use crate::geometry::NO_PRIMITIVE;
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -34,6 +35,8 @@ pub(super) struct Incident<S: Simd> {
     pub weight: V3<S::f32s>,
     pub sample: S::u32s,
     pub media: S::u32s,
+    /// The primitive, where it is flat; else [`NO_PRIMITIVE`].
+    pub flat: S::u32s,
 }
 
 /// What share of the light is mirrored and refracted, and where to.
@@ -90,7 +93,7 @@ pub(super) fn follow<S: Simd>(
         if heavy.any_true() {
             let direction = hold_unit::<S>(incident.direction + incident.normal.scale(cosine * 2.0));
             let start = leave::start::<S>(incident.position, incident.facing, incident.margin, direction);
-            mirrored.push_lanes::<S>(heavy, start, direction, weight, incident.sample, incident.media);
+            mirrored.push_lanes::<S>(heavy, start, direction, weight, [incident.sample, incident.media, incident.flat]);
             counts.reflection += u64::from(heavy.to_bitmask().count_ones());
         }
     }
@@ -105,7 +108,8 @@ pub(super) fn follow<S: Simd>(
                 incident.media
             };
             let start = leave::start::<S>(incident.position, -incident.facing, incident.margin, split.inward);
-            refracted.push_lanes::<S>(heavy, start, split.inward, weight, incident.sample, inside);
+            let nothing = S::u32s::splat(simd, NO_PRIMITIVE);
+            refracted.push_lanes::<S>(heavy, start, split.inward, weight, [incident.sample, inside, nothing]);
             counts.refraction += u64::from(heavy.to_bitmask().count_ones());
         }
     }

@@ -114,7 +114,8 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
     let sample = S::u32s::from_slice(simd, samples);
     let primitives = S::u32s::from_slice(simd, hits.primitives);
     // All shapes are flat or, from outside, convex: a ray that leaves their outside does not come back.
-    let convex = Mask::<S>::from_bitmask(simd, surfaces.flat) | !view.from_behind;
+    let flat = Mask::<S>::from_bitmask(simd, surfaces.flat);
+    let convex = flat | !view.from_behind;
     for (light, queue) in frame.lights.iter().zip(shadows) {
         let Some((reaching, direction, distance, gain)) = light_gain(simd, light, &lit, &reflectance) else {
             continue;
@@ -142,6 +143,7 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
             weight,
             sample,
             media: S::u32s::from_slice(simd, &rays.media[lanes]),
+            flat: flat.select(primitives, S::u32s::splat(simd, NO_PRIMITIVE)),
         };
         simd.vectorize(
             #[inline(always)]

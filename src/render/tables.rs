@@ -140,6 +140,8 @@ pub struct Tables {
     pub opaque: Vec<bool>,
     /// Objects that bound a transparent body.
     pub transparent_bodies: Vec<u32>,
+    /// Whether anything flat mirrors.
+    pub flat_mirrors: bool,
 }
 
 impl Tables {
@@ -155,6 +157,11 @@ impl Tables {
         let transparent_bodies = (0..scene.objects.len() as u32)
             .filter(|&o| scene.objects[o as usize].body && material_of(o).is_transparent())
             .collect();
+        let materials: Vec<FlatMaterial> = scene.materials.iter().map(FlatMaterial::new).collect();
+        let mirrors = |object: u32| materials[scene.objects[object as usize].material as usize].secondary;
+        let primitives = scene.geometry.slots.iter().zip(&scene.geometry.ids);
+        let flat_mirrors = materials.iter().any(|material| material.secondary)
+            && primitives.into_iter().any(|(slot, id)| slot.kind.is_flat() && mirrors(id.object));
         let mut attributes_of = Vec::new();
         if !scene.geometry.attributes.is_empty() {
             attributes_of.resize(scene.geometry.len(), NOTHING);
@@ -166,9 +173,10 @@ impl Tables {
             generation: Some(scene.generation),
             material_of: scene.geometry.ids.iter().map(|id| scene.objects[id.object as usize].material).collect(),
             attributes_of,
-            materials: scene.materials.iter().map(FlatMaterial::new).collect(),
+            materials,
             opaque,
             transparent_bodies,
+            flat_mirrors,
         }
     }
 

@@ -1,11 +1,12 @@
 //! One tile: visibility, then queue after queue of its paths, then bytes. No recursion.
 
+use super::extent::Lists;
 use super::film::FilmTile;
 use super::frame::Frame;
 use super::media::{Media, MediaMark};
 use super::queue::{RayQueue, ShadowQueue};
 use super::samples::{Colors, SAMPLES, sample_at};
-use super::{FrameStats, shade, shadow, trace, visibility};
+use super::{FrameStats, mirror, shade, shadow, trace, visibility};
 use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex, Stack};
 use crate::settings::Supersample;
 use fearless_simd::Simd;
@@ -33,6 +34,7 @@ pub struct Worker {
     pub(super) cells: visibility::Cells,
     pub(super) order: visibility::Order,
     pub(super) levels: Option<Box<visibility::Levels>>,
+    pub(super) lists: Option<Box<Lists>>,
     /// Queues whose turn has not come, the next one last.
     waiting: Vec<Waiting>,
     /// Empty queues, for their memory.
@@ -173,8 +175,14 @@ impl Worker {
             self.media.truncate(next.media);
             self.spare.push(std::mem::replace(&mut self.rays, next.rays));
             let start = Instant::now();
-            trace::closest_hits(simd, frame, self);
-            self.stats.stages_ms.secondary += milliseconds_since(start);
+            let certificate = self.stats.stages_ms.certificate;
+            if level == 2 && frame.plan.flat_mirrors {
+                mirror::closest_hits(simd, frame, self);
+            } else {
+                trace::closest_hits(simd, frame, self);
+            }
+            let certificate = self.stats.stages_ms.certificate - certificate;
+            self.stats.stages_ms.secondary += milliseconds_since(start) - certificate;
         }
     }
 

@@ -37,15 +37,32 @@ pub(super) fn test_primitive<S: Simd>(simd: S, frame: &Frame<'_>, primitive: u32
 /// Finds the closest hits of some of the rays from the eye in `worker.rays`, and perhaps of rays behind them.
 pub(super) fn primary_range<S: Simd>(simd: S, frame: &Frame<'_>, range: Range<usize>, worker: &mut Worker) {
     let search = eye_search(frame);
-    let Worker { rays, stack, stats, .. } = worker;
-    stats.rays.primary += range.len() as u64;
+    worker.stats.rays.primary += range.len() as u64;
+    trace_range(simd, &search, range, frame.camera.near, frame.camera.far, worker);
+}
+
+/// Finds the closest hits of some of the secondary rays in `worker.rays`, and perhaps of rays behind them.
+pub(super) fn secondary_range<S: Simd>(simd: S, search: &Search<'_>, range: Range<usize>, worker: &mut Worker) {
+    trace_range(simd, search, range, 0.0, f32::INFINITY, worker);
+}
+
+/// Finds the closest hits of the given rays, and perhaps of rays behind them.
+fn trace_range<S: Simd>(
+    simd: S,
+    search: &Search<'_>,
+    range: Range<usize>,
+    t_min: f32,
+    t_max: f32,
+    worker: &mut Worker,
+) {
+    let Worker { rays, stack, .. } = worker;
     simd.vectorize(
         #[inline(always)]
         || {
-            let (near, far) = (S::f32s::splat(simd, frame.camera.near), S::f32s::splat(simd, frame.camera.far));
+            let (t_min, t_max) = (S::f32s::splat(simd, t_min), S::f32s::splat(simd, t_max));
             for at in range.step_by(S::f32s::LEN) {
                 let packet = Packet::new(search.geometry, rays.origin.load(simd, at), rays.direction.load(simd, at));
-                let mut visitor = ClosestHit::new(simd, near, far);
+                let mut visitor = ClosestHit::new(simd, t_min, t_max);
                 search.traverse(simd, &packet, stack, &mut visitor);
                 store_hits(simd, &visitor, rays, at);
             }

@@ -92,6 +92,9 @@ impl Search<'_> {
                     for wall in &walls {
                         outside |= wall.excludes(simd, node);
                     }
+                    if let Some(front) = &beam.front {
+                        outside |= front.excludes(simd, node);
+                    }
                     let mut met = !outside & ((1 << WIDTH) - 1);
                     let depths = beam.depths(simd, node);
                     let bottom = depth;

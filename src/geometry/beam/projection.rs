@@ -113,7 +113,9 @@ pub struct Points<F> {
     /// View coordinate z of where the ray ends, for rays that come from elsewhere to the apex; else how much it grows
     /// along the ray.
     depth: F,
-    /// Whether rays start at the apex.
+    /// View coordinate z of where the ray begins, for rays that come from the apex; 0 where that is the apex.
+    begin: F,
+    /// Whether rays come from the apex.
     from_apex: bool,
     /// What x and y can be off by.
     off: F,
@@ -132,7 +134,20 @@ impl<F> Points<F> {
         let inverse = F::splat(z.token(), 1.0) / z;
         let (x, y) = (x * inverse, y * inverse);
         let off = (x.abs() + y.abs() + 1.0) * projection.slack_share;
-        Self { x, y, depth: z, from_apex: true, off, parallel: false }
+        Self { x, y, depth: z, begin: F::splat(z.token(), 0.0), from_apex: true, off, parallel: false }
+    }
+
+    /// Rays that begin in front of the apex, in perspective, and whose lines pass it at a distance of at most `beside`.
+    #[inline(always)]
+    pub fn past<S: Simd>(projection: &Projection, start: V3<F>, direction: V3<F>, beside: f32) -> Self
+    where
+        F: Lanes<S>,
+    {
+        let simd = start.x.token();
+        let from_apex = start - V3::splat(simd, projection.apex);
+        let z = from_apex.dot(V3::splat(simd, projection.forward));
+        let along = Self::along(projection, direction);
+        Self { begin: z + 2.0 * projection.slack, off: along.off + F::splat(simd, beside) / z, ..along }
     }
 
     /// Rays that end (or start) at points, and of which what lies beyond is of no interest.
@@ -145,12 +160,12 @@ impl<F> Points<F> {
         let depth = z + 2.0 * projection.slack;
         if projection.parallel {
             let off = F::splat(z.token(), projection.slack);
-            return Self { x, y, depth, from_apex: false, off, parallel: true };
+            return Self { x, y, depth, begin: depth, from_apex: false, off, parallel: true };
         }
         let inverse = F::splat(z.token(), 1.0) / z;
         let (x, y) = (x * inverse, y * inverse);
         let off = (x.abs() + y.abs() + 1.0) * projection.slack_share;
-        Self { x, y, depth, from_apex: false, off, parallel: false }
+        Self { x, y, depth, begin: depth, from_apex: false, off, parallel: false }
     }
 
     /// A form's value on each ray.
@@ -163,7 +178,7 @@ impl<F> Points<F> {
     }
 
     /// Where something with the given upper bound of nearness lies deeper than where the ray ends, `limit` along it if it
-    /// starts at the apex.
+    /// comes from the apex.
     #[inline(always)]
     pub(super) fn is_too_deep<S: Simd>(&self, [a, b, c]: [F; 3], limit: F) -> F::Mask
     where
@@ -173,7 +188,7 @@ impl<F> Points<F> {
         if self.parallel {
             return (nearness + self.depth).simd_lt(0.0);
         }
-        let end = if self.from_apex { self.depth * limit } else { self.depth };
+        let end = if self.from_apex { self.depth.mul_add(limit, self.begin) } else { self.depth };
         (nearness * end).simd_lt(1.0 - 1e-5)
     }
 }
@@ -251,6 +266,8 @@ pub struct Beam<'a> {
     pub most: usize,
     /// For rays that only ask whether anything is in the way: what blocks them all.
     pub blocking: Option<Blocking<'a>>,
+    /// What rays never leave, where they start at a mirror.
+    pub(super) front: Option<HalfSpace>,
 }
 
 impl<'a> Beam<'a> {
@@ -265,6 +282,7 @@ impl<'a> Beam<'a> {
             ignored: NO_PRIMITIVE,
             most: usize::MAX,
             blocking: None,
+            front: None,
         }
     }
 
@@ -310,6 +328,12 @@ impl<'a> Beam<'a> {
     /// most `most` things.
     pub fn asking(self, ignored: PrimitiveIndex, blocking: Blocking<'a>, most: usize) -> Self {
         Self { ignored, blocking: Some(blocking), most, ..self }
+    }
+
+    /// The beam of rays that stay where normal·p is at least `lowest`, and may see at most `most` things.
+    pub fn in_front(self, lowest: Option<(Vec3, f32)>, most: usize) -> Self {
+        let slack = 2.0 * self.projection.slack;
+        Self { front: lowest.map(|(normal, lowest)| HalfSpace { normal, offset: lowest - slack }), most, ..self }
     }
 
     /// How deep along `forward` a node's boxes begin.

@@ -3,6 +3,7 @@
 mod crossing;
 mod verdict;
 
+use super::extent::{FEW, Lists, parts};
 use super::frame::Frame;
 use super::queue::ShadowQueue;
 use super::samples::Colors;
@@ -23,14 +24,6 @@ use verdict::{Judge, Verdict};
 pub struct ShadowScratch {
     /// For each light the primitive that blocked it last in this tile: the thesis's shadow-object cache.
     last_blocker: Vec<PrimitiveIndex>,
-    lists: Option<Box<Lists>>,
-}
-
-/// What can be in the way of a run of rays, and of a part of it.
-#[derive(Debug, Default)]
-struct Lists {
-    whole: Candidates,
-    part: Candidates,
 }
 
 impl ShadowScratch {
@@ -79,7 +72,7 @@ impl ShadowQueue {
 fn resolve_light<S: Simd>(simd: S, frame: &Frame<'_>, light: usize, queue: &mut ShadowQueue, worker: &mut Worker) {
     let search = Search::new(&frame.scene.geometry, frame.plan.tree);
     queue.pad();
-    let mut lists = worker.shadow_scratch.lists.take().unwrap_or_default();
+    let mut lists = worker.lists.take().unwrap_or_default();
     if frame.settings.visibility == Visibility::Certified {
         for run in queue.runs.windows(2) {
             let range = run[0] as usize..run[1] as usize;
@@ -90,14 +83,8 @@ fn resolve_light<S: Simd>(simd: S, frame: &Frame<'_>, light: usize, queue: &mut 
     } else {
         trace_rays(simd, frame, light, queue, 0..queue.len(), &search, None, worker);
     }
-    worker.shadow_scratch.lists = Some(lists);
+    worker.lists = Some(lists);
 }
-
-/// Fewer candidates are not worth being sifted for parts of a run.
-const FEW: usize = 3;
-
-/// Rays in such a part.
-const PART: usize = 64;
 
 /// Resolves shadow rays of one light that start close together.
 fn resolve_run<S: Simd>(
@@ -125,10 +112,7 @@ fn resolve_run<S: Simd>(
         let suspects = Some(Suspects { candidates: whole, judge: &judge });
         return carry_out(simd, frame, light, queue, range, verdict, search, suspects, worker);
     }
-    let parts = (range.len() / PART).max(1);
-    let at = |part: usize| range.start + range.len() * part / parts;
-    for number in 0..parts {
-        let own = at(number)..at(number + 1);
+    for own in parts(range) {
         let verdict = judge.judge_part(simd, queue, own.clone(), whole, part);
         let suspects = Some(Suspects { candidates: part, judge: &judge });
         carry_out(simd, frame, light, queue, own, verdict, search, suspects, worker);

@@ -3,6 +3,7 @@
 use crate::geometry::beam::{Beam, Blocking, Candidates, Cover, Points, Projection};
 use crate::geometry::{NO_PRIMITIVE, Opaque, PrimitiveIndex, Search, Stack};
 use crate::math::V3;
+use crate::render::extent::Extent;
 use crate::render::frame::Frame;
 use crate::render::queue::ShadowQueue;
 use crate::scene::light::LightKind;
@@ -69,12 +70,11 @@ impl<'a> Judge<'a> {
         let forward = forward.try_normalize()?;
         let right = forward.any_orthonormal_vector();
         let axes = [right, right.cross(forward), forward];
-        let extent = Extent::of(simd, &Projection::new(apex, axes, parallel, 0.0, 0.0), queue, range.clone())?;
+        let extent = Extent::of(simd, &Projection::new(apex, axes, parallel, 0.0, 0.0), &queue.origin, None, range.clone())?;
         let reach = search.geometry.reach().max(extent.reach);
         let projection = Projection::new(apex, axes, parallel, reach, frame.beam_margin);
         let slack = projection.slack;
-        let width = (extent.x[1] - extent.x[0]).max(extent.y[1] - extent.y[0]);
-        if !parallel && (extent.z[0] < LEAST_DISTANCE * slack || width > WIDEST) {
+        if !parallel && (extent.z[0] < LEAST_DISTANCE * slack || extent.width() > WIDEST) {
             return None;
         }
         let source = common_source(simd, queue, range);
@@ -103,7 +103,9 @@ impl<'a> Judge<'a> {
         candidates: &Candidates,
         own: &mut Candidates,
     ) -> Verdict {
-        let Some(extent) = Extent::of(simd, &self.projection, queue, part) else { return Verdict::Unknown };
+        let Some(extent) = Extent::of(simd, &self.projection, &queue.origin, None, part) else {
+            return Verdict::Unknown;
+        };
         own.filter(simd, self.search.geometry, candidates, &self.beam(&extent));
         Verdict::of(own)
     }
@@ -177,52 +179,4 @@ fn common_source<S: Simd>(simd: S, queue: &ShadowQueue, range: Range<usize>) -> 
             same.then_some(first)
         },
     )
-}
-
-/// Where shadow rays start, in view coordinates.
-struct Extent {
-    x: [f32; 2],
-    y: [f32; 2],
-    z: [f32; 2],
-    /// Largest magnitude of any coordinate in the world.
-    reach: f32,
-}
-
-impl Extent {
-    /// The extent of the rays' starts; `None` if some are not in front of the apex, or too few.
-    fn of<S: Simd>(simd: S, projection: &Projection, queue: &ShadowQueue, range: Range<usize>) -> Option<Self> {
-        simd.vectorize(
-            #[inline(always)]
-            || {
-                let lanes = S::f32s::LEN;
-                if range.len() < lanes {
-                    return None;
-                }
-                let (infinity, one) = (S::f32s::splat(simd, f32::INFINITY), S::f32s::splat(simd, 1.0));
-                let (mut least, mut most) = (V3::all(infinity), V3::all(-infinity));
-                let mut reach = S::f32s::splat(simd, 0.0);
-                for at in range.clone().step_by(lanes) {
-                    // The last packet overlaps the one before rather than look beyond the range.
-                    let start: V3<S::f32s> = queue.origin.load(simd, at.min(range.end - lanes));
-                    let view = projection.view(start);
-                    let inverse = if projection.parallel { one } else { one / view.z };
-                    let (x, y) = (view.x * inverse, view.y * inverse);
-                    least = V3::new(least.x.min(x), least.y.min(y), least.z.min(view.z));
-                    most = V3::new(most.x.max(x), most.y.max(y), most.z.max(view.z));
-                    reach = reach.max(start.x.abs()).max(start.y.abs()).max(start.z.abs());
-                }
-                let extent = Self {
-                    x: [least.x.reduce_min(), most.x.reduce_max()],
-                    y: [least.y.reduce_min(), most.y.reduce_max()],
-                    z: [least.z.reduce_min(), most.z.reduce_max()],
-                    reach: reach.reduce_max(),
-                };
-                let mut finite = true;
-                for [from, to] in [extent.x, extent.y, extent.z] {
-                    finite &= from.is_finite() && to.is_finite();
-                }
-                (finite && (projection.parallel || extent.z[0] > 0.0)).then_some(extent)
-            },
-        )
-    }
 }
