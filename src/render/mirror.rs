@@ -11,7 +11,7 @@ use super::frame::Frame;
 use super::queue::{RUN, RayQueue};
 use super::tile::{Worker, milliseconds_since};
 use super::trace;
-use crate::geometry::beam::{Beam, Candidates, Cover, Points, Projection};
+use crate::geometry::beam::{Beam, Candidates, Cover, Points, Projection, SLACK};
 use crate::geometry::{ClosestHit, NO_PRIMITIVE, PrimitiveIndex, Search, Stack};
 use crate::math::V3;
 use fearless_simd::Simd;
@@ -139,7 +139,9 @@ impl<'a> View<'a> {
         let reach = 2.0 * search.geometry.reach().max(extent.reach) + apex.abs().max_element();
         let projection = Projection::new(apex, axes, false, reach, frame.beam_margin);
         let slack = projection.slack;
-        let usable = extent.z[0] > LEAST_DISTANCE * slack && extent.beside < 0.5 * slack && extent.width() < WIDEST;
+        // That lines come this close is not a margin that may be given up.
+        let close = 0.5 * SLACK * (reach + apex.abs().max_element());
+        let usable = extent.z[0] > LEAST_DISTANCE * slack && extent.beside < close && extent.width() < WIDEST;
         usable.then(|| Self { search, projection, extent, lowest: lowest(simd, normal, rays, run) })
     }
 

@@ -5,6 +5,7 @@ mod blit;
 mod cli;
 mod determinism;
 mod exactness;
+mod flat_mirrors;
 mod imports;
 mod our_scenes;
 mod overlay;

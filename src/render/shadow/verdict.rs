@@ -70,7 +70,8 @@ impl<'a> Judge<'a> {
         let forward = forward.try_normalize()?;
         let right = forward.any_orthonormal_vector();
         let axes = [right, right.cross(forward), forward];
-        let extent = Extent::of(simd, &Projection::new(apex, axes, parallel, 0.0, 0.0), &queue.origin, None, range.clone())?;
+        let extent =
+            Extent::of(simd, &Projection::new(apex, axes, parallel, 0.0, 0.0), &queue.origin, None, range.clone())?;
         let reach = search.geometry.reach().max(extent.reach);
         let projection = Projection::new(apex, axes, parallel, reach, frame.beam_margin);
         let slack = projection.slack;

@@ -84,6 +84,7 @@ fn brute_force(settings: &Settings) -> Settings {
         threads: 1,
         supersample: settings.supersample,
         shadows: settings.shadows,
+        reflections: settings.reflections,
         ..Settings::exact()
     };
     set(&mut judge, "visibility", "full");

@@ -140,8 +140,8 @@ fn scenes_that_failed_once_do_not_again() {
 }
 
 /// Types of objects that are left alone on a stage, one row a kind of margin. None: all of them, and what is wrong is
-/// wrong about shadows.
-const KINDS: [(&str, &[&str]); 8] = [
+/// wrong about shadows, or about mirrors.
+const KINDS: [(&str, &[&str]); 9] = [
     ("spheres", &["sphere"]),
     ("triangles", &["triangle", "rectangle", "mesh"]),
     ("boxes", &["box"]),
@@ -150,12 +150,14 @@ const KINDS: [(&str, &[&str]); 8] = [
     ("planes", &["plane"]),
     ("rivals", &["plane", "disk", "triangle", "rectangle", "sphere"]),
     ("shadows", &[]),
+    ("reflections", &[]),
 ];
 
 #[test]
 fn margins_that_are_missing_are_noticed() {
     let exact = (String::new(), Settings { threads: 1, ..Settings::exact() });
     let no_shadows = (String::new(), Settings { shadows: false, ..exact.1.clone() });
+    let neither = (String::new(), Settings { reflections: false, ..no_shadows.1.clone() });
     for (name, kinds) in KINDS {
         let (number, family) = FAMILIES.iter().enumerate().find(|(_, family)| family.name == name).unwrap();
         let mut judge = Judge::new(0.0);
@@ -164,8 +166,13 @@ fn margins_that_are_missing_are_noticed() {
             if let (Some(objects), false) = (file["objects"].as_array_mut(), kinds.is_empty()) {
                 objects.retain(|object| kinds.iter().any(|kind| object["type"] == *kind));
             }
-            let primary = judge.complaint(&file, if kinds.is_empty() { &no_shadows } else { &exact }).is_some();
-            primary != kinds.is_empty() && judge.complaint(&file, &exact).is_some()
+            // Right but for what the second has and the first has not.
+            let [without, with] = match name {
+                "shadows" => [&no_shadows, &exact],
+                "reflections" => [&neither, &no_shadows],
+                _ => return judge.complaint(&file, &exact).is_some(),
+            };
+            judge.complaint(&file, without).is_none() && judge.complaint(&file, with).is_some()
         };
         let first = (number as u64) << 32;
         assert!((first..first + family.scenes).any(&mut noticed), "{name}: nothing is wrong without margins");
