@@ -11,7 +11,6 @@ use super::tile::{Worker, milliseconds_since};
 use crate::geometry::beam::{Candidates, Points};
 use crate::geometry::{AnyHit, NO_PRIMITIVE, Opaque, Packet, PrimitiveIndex, Rays, Search, Stack, Visitor};
 use crate::math::V3;
-use crate::settings::Visibility;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use std::ops::Range;
@@ -51,7 +50,6 @@ pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &
             if lit_by_eye || !frame.plan.shadows {
                 queue.add_gains(simd, 0..queue.len(), &mut worker.color);
             } else {
-                worker.stats.rays.shadow += queue.len() as u64;
                 resolve_light(simd, frame, light, queue, worker);
             }
         }
@@ -80,7 +78,7 @@ fn resolve_light<S: Simd>(simd: S, frame: &Frame<'_>, light: usize, queue: &mut 
     let search = Search::new(&frame.scene.geometry, frame.plan.tree);
     queue.pad();
     let mut lists = worker.shadow_scratch.lists.take().unwrap_or_default();
-    if frame.settings.visibility == Visibility::Certified {
+    if frame.plan.shadow_beams {
         for run in queue.runs.windows(2) {
             let range = run[0] as usize..run[1] as usize;
             if !range.is_empty() {
@@ -155,8 +153,11 @@ fn carry_out<S: Simd>(
     worker: &mut Worker,
 ) {
     match verdict {
-        Verdict::Dark => {}
-        Verdict::Lit => queue.add_gains(simd, range, &mut worker.color),
+        Verdict::Dark => worker.stats.certificates.dark += range.len() as u64,
+        Verdict::Lit => {
+            worker.stats.certificates.lit += range.len() as u64;
+            queue.add_gains(simd, range, &mut worker.color);
+        }
         Verdict::Listed => trace_rays(simd, frame, light, queue, range, search, suspects, worker),
         Verdict::Unknown => trace_rays(simd, frame, light, queue, range, search, None, worker),
     }
@@ -219,11 +220,13 @@ fn trace_rays<S: Simd>(
                 if let Some(Suspects { candidates, judge }) = suspects {
                     let points = judge.points::<S>(origin);
                     if candidates.are_passed_by(simd, &points, distance) {
+                        stats.certificates.lit += u64::from(present.count_ones());
                         color.add(simd, &queue.sample[lanes], present, gain);
                         continue;
                     }
                     occluders.listed = Some((candidates, points));
                 }
+                stats.rays.shadow += u64::from(present.count_ones());
                 let sources = S::u32s::from_slice(simd, &queue.source[lanes.clone()]);
                 let mut visitor = AnyHit::new(simd, distance, sources, opaque);
                 if frame.settings.shadow_cache && suspects.is_none() && *last_blocker != NO_PRIMITIVE {

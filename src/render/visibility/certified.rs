@@ -158,11 +158,6 @@ fn resolve_area<S: Simd>(
 ) {
     let Worker { rays, stats, .. } = worker;
     let pixels = area.pixels();
-    if candidates.is_certain() {
-        stats.pixels.certified += pixels as u64;
-    } else {
-        stats.pixels.resolved += pixels as u64;
-    }
     simd.vectorize(
         #[inline(always)]
         || {
@@ -177,4 +172,13 @@ fn resolve_area<S: Simd>(
             }
         },
     );
+    if candidates.is_certain() {
+        stats.pixels.certified += pixels as u64;
+    } else {
+        stats.pixels.resolved += pixels as u64;
+        let seen = &rays.primitive[area.start..area.start + pixels];
+        if seen.iter().all(|&primitive| primitive == seen[0]) {
+            stats.certificates.refused += pixels as u64;
+        }
+    }
 }
