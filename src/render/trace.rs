@@ -44,7 +44,7 @@ pub(super) fn primary_range<S: Simd>(simd: S, frame: &Frame<'_>, range: Range<us
         || {
             let (near, far) = (S::f32s::splat(simd, frame.camera.near), S::f32s::splat(simd, frame.camera.far));
             for at in range.step_by(S::f32s::LEN) {
-                let packet = Packet::new(search.geometry, rays.origin.load(simd, at), rays.direction.load(simd, at));
+                let packet = Packet::new(search.geometry, rays.origins(simd, at), rays.direction.load(simd, at));
                 let mut visitor = ClosestHit::new(simd, near, far);
                 search.traverse(simd, &packet, stack, &mut visitor);
                 store_hits(simd, &visitor, rays, at);
@@ -93,7 +93,7 @@ fn for_each_packet<S: Simd>(
     rays.pad();
     let (t_min, t_max) = (S::f32s::splat(simd, t_min), S::f32s::splat(simd, t_max));
     for at in (first..rays.len()).step_by(S::f32s::LEN) {
-        let packet = Packet::new(search.geometry, rays.origin.load(simd, at), rays.direction.load(simd, at));
+        let packet = Packet::new(search.geometry, rays.origins(simd, at), rays.direction.load(simd, at));
         let mut visitor = ClosestHit::new(simd, t_min, t_max);
         find(&packet, &mut visitor);
         store_hits(simd, &visitor, rays, at);
