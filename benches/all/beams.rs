@@ -53,18 +53,12 @@ fn list(bencher: Bencher) {
 }
 
 /// How many candidates the sixteen cells of the block in the middle have.
-fn sift_middle<S: Simd>(
-    simd: S,
-    geometry: &Geometry,
-    projection: &Projection,
-    block: &Candidates,
-    cell: &mut Candidates,
-) -> usize {
+fn sift_middle<S: Simd>(simd: S, projection: &Projection, block: &Candidates, cell: &mut Candidates) -> usize {
     let first = BLOCKS / 2 * 4;
     let mut listed = 0;
     for number in 0..16 {
         let beam = beam(projection, [first + number % 4, first + number / 4], BLOCKS * 4);
-        cell.filter(simd, geometry, block, &beam);
+        cell.filter(simd, block, &beam);
         listed += cell.len();
     }
     listed
@@ -79,7 +73,7 @@ fn sift(bencher: Bencher) {
     let mut stack = Stack::default();
     dispatch!(SimdToken::best(), simd =>
         Search::new(&geometry, true).collect(simd, &whole, nothing, &mut block, &mut stack));
-    bencher.counter(ItemsCount::new(16_usize)).bench_local(
-        || dispatch!(SimdToken::best(), simd => sift_middle(simd, &geometry, &projection, &block, &mut cell)),
-    );
+    bencher
+        .counter(ItemsCount::new(16_usize))
+        .bench_local(|| dispatch!(SimdToken::best(), simd => sift_middle(simd, &projection, &block, &mut cell)));
 }

@@ -105,7 +105,7 @@ fn closest<S: Simd>(simd: S, case: &Case, random: &mut Random) -> (usize, usize)
     let (search, mut stack) = (Search::new(&case.geometry, true), Stack::default());
     let (mut whole, mut part) = (Candidates::default(), Candidates::default());
     assert!(search.collect(simd, &beam, Cover::nothing(&case.projection), &mut whole, &mut stack));
-    part.filter(simd, &case.geometry, &whole, &beam);
+    part.filter(simd, &whole, &beam);
     let (mut hits, mut wrong) = (0, 0);
     for _ in 0..4 {
         let [origin, direction] = packet(simd, case, random);
@@ -172,7 +172,7 @@ fn shadows<S: Simd>(simd: S, case: &Case, random: &mut Random) -> (usize, usize)
         Search::new(&case.geometry, false).traverse(simd, &packet, &mut stack, &mut alone);
         let mut found = AnyHit::new(simd, limit, nobody, Opaque::All);
         let points = Points::to(projection, start);
-        if !candidates.blocked && !candidates.are_passed_by(simd, &points, limit) {
+        if !candidates.blocked && !candidates.are_passed_by(simd, &points, &found) {
             search.resolve(simd, &candidates, &points, start, -direction, &mut found);
         }
         for lane in 0..S::f32s::LEN {

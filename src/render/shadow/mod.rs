@@ -216,10 +216,12 @@ fn trace_rays<S: Simd>(
                 // Lanes beyond the range go nowhere.
                 let distance = <S::f32s as SimdBase<S>>::Mask::from_bitmask(simd, present)
                     .select(S::f32s::from_slice(simd, &queue.distance[lanes.clone()]), S::f32s::splat(simd, 0.0));
+                let sources = S::u32s::from_slice(simd, &queue.source[lanes.clone()]);
+                let mut visitor = AnyHit::new(simd, distance, sources, opaque);
                 let mut occluders = Occluders { search: *search, listed: None };
                 if let Some(Suspects { candidates, judge }) = suspects {
                     let points = judge.points::<S>(origin);
-                    if candidates.are_passed_by(simd, &points, distance) {
+                    if candidates.are_passed_by(simd, &points, &visitor) {
                         stats.certificates.lit += u64::from(present.count_ones());
                         color.add(simd, &queue.sample[lanes], present, gain);
                         continue;
@@ -227,8 +229,6 @@ fn trace_rays<S: Simd>(
                     occluders.listed = Some((candidates, points));
                 }
                 stats.rays.shadow += u64::from(present.count_ones());
-                let sources = S::u32s::from_slice(simd, &queue.source[lanes.clone()]);
-                let mut visitor = AnyHit::new(simd, distance, sources, opaque);
                 if frame.settings.shadow_cache && suspects.is_none() && *last_blocker != NO_PRIMITIVE {
                     search.test_one(simd, *last_blocker, &Rays::new(origin, direction), &mut visitor);
                     count_cache(&mut stats.shadow_cache, present, visitor.blocked.to_bitmask());

@@ -104,7 +104,7 @@ impl<'a> Judge<'a> {
         own: &mut Candidates,
     ) -> Verdict {
         let Some(extent) = Extent::of(simd, &self.projection, queue, part) else { return Verdict::Unknown };
-        own.filter(simd, self.search.geometry, candidates, &self.beam(&extent));
+        own.filter(simd, candidates, &self.beam(&extent));
         Verdict::of(own)
     }
 

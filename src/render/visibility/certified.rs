@@ -92,7 +92,7 @@ fn find_half<S: Simd>(
     let area = worker.order.halves[half];
     let own_beam = beam(frame, pass, area);
     let complete = if listed {
-        own.filter(simd, search.geometry, block, &own_beam);
+        own.filter(simd, block, &own_beam);
         true
     } else {
         search.collect(simd, &own_beam, nothing, own, &mut worker.stack)
@@ -112,7 +112,7 @@ fn find_half<S: Simd>(
         }
         let beam = beam(frame, pass, area);
         if complete {
-            cell.filter(simd, search.geometry, own, &beam);
+            cell.filter(simd, own, &beam);
         } else {
             *known = search.collect(simd, &beam, nothing, cell, &mut worker.stack);
         }
