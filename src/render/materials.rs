@@ -162,12 +162,16 @@ fn look_up<S: Simd>(
 ) {
     let ids = &frame.scene.geometry.ids;
     let id = ids[hits.primitives[hits.first()] as usize];
+    if hits.common.is_some() {
+        let sides = Mask::<S>::splat(simd, id.primitive == 0);
+        let found = look_up_object(simd, frame, hits, surfaces, id.object, sides, textured, [*color, *emission]);
+        [*color, *emission] = found;
+        return;
+    }
     let (mut objects, mut parts) = ([id.object; MOST_LANES], [id.primitive; MOST_LANES]);
-    if hits.common.is_none() {
-        for lane in hits.lanes() {
-            let id = ids[hits.primitives[lane] as usize];
-            (objects[lane], parts[lane]) = (id.object, id.primitive);
-        }
+    for lane in hits.lanes() {
+        let id = ids[hits.primitives[lane] as usize];
+        (objects[lane], parts[lane]) = (id.object, id.primitive);
     }
     let lanes = S::u32s::from_slice(simd, &objects[..S::f32s::LEN]);
     let sides = S::u32s::from_slice(simd, &parts[..S::f32s::LEN]).simd_eq(0);
@@ -177,23 +181,42 @@ fn look_up<S: Simd>(
         let same = lanes.simd_eq(number);
         let members = same.to_bitmask() & left;
         left &= !members;
+        let [found, given_off] =
+            look_up_object(simd, frame, hits, surfaces, number, sides, members, [*color, *emission]);
+        *color = V3::select(same, found, *color);
+        *emission = V3::select(same, given_off, *emission);
+    }
+}
 
-        let object = &frame.scene.objects[number as usize];
-        let own = if object.mapping == Mapping::Vertex {
-            vertex_coordinates(simd, frame, hits, surfaces)
-        } else {
-            [S::f32s::splat(simd, 0.0); 2]
-        };
-        let point = &surfaces.point;
-        let coordinates = object.texture_coordinates(simd, point.position, point.normal, sides, own);
-        let material = &frame.tables.materials[object.material as usize];
-        for (texture, into) in [(material.color_texture, &mut *color), (material.emission_texture, &mut *emission)] {
-            if let Some(texture) = texture {
-                let found = frame.scene.textures[texture as usize].sample(simd, coordinates, members);
-                *into = V3::select(same, found, *into);
-            }
+/// Colour and emission as the textures of object `number` have them, otherwise as they were. `sides` are the lanes that
+/// hit its first primitive; only the lanes in the bit set `members` matter.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what is known of one object's lanes")]
+fn look_up_object<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    hits: &Hits<'_>,
+    surfaces: &Surfaces<S>,
+    number: u32,
+    sides: Mask<S>,
+    members: u64,
+    mut found: [V3<S::f32s>; 2],
+) -> [V3<S::f32s>; 2] {
+    let object = &frame.scene.objects[number as usize];
+    let own = if object.mapping == Mapping::Vertex {
+        vertex_coordinates(simd, frame, hits, surfaces)
+    } else {
+        [S::f32s::splat(simd, 0.0); 2]
+    };
+    let point = &surfaces.point;
+    let coordinates = object.texture_coordinates(simd, point.position, point.normal, sides, own);
+    let material = &frame.tables.materials[object.material as usize];
+    for (texture, into) in [material.color_texture, material.emission_texture].into_iter().zip(&mut found) {
+        if let Some(texture) = texture {
+            *into = frame.scene.textures[texture as usize].sample(simd, coordinates, members);
         }
     }
+    found
 }
 
 /// Texture coordinates that the corners of triangles carry, interpolated; 0 where they carry none.

@@ -29,11 +29,21 @@ impl Encoder {
             ToneMap::None => exposed,
             ToneMap::Neutral => neutral(simd, exposed),
         };
-        let (mut bits, mut entries) = ([S::u32s::splat(simd, 0); 3], [[0; MOST_LANES]; 3]);
-        for ((lanes, bits), entries) in [mapped.x, mapped.y, mapped.z].into_iter().zip(&mut bits).zip(&mut entries) {
+        let mut bits = [S::u32s::splat(simd, 0); 3];
+        let mut flat = true;
+        for (bits, lanes) in bits.iter_mut().zip([mapped.x, mapped.y, mapped.z]) {
             *bits = SrgbTable::clamp(simd, lanes);
+            flat &= bits.simd_eq(bits[0]).all_true();
+        }
+        let mut entries = [[0; MOST_LANES]; 3];
+        for (entries, &bits) in entries.iter_mut().zip(&bits) {
+            if flat {
+                // As backgrounds are.
+                *entries = [self.table.entry(SrgbTable::buckets::<S>(bits)[0]); MOST_LANES];
+                continue;
+            }
             let mut buckets = [0; MOST_LANES];
-            SrgbTable::buckets::<S>(*bits).store_slice(&mut buckets[..S::f32s::LEN]);
+            SrgbTable::buckets::<S>(bits).store_slice(&mut buckets[..S::f32s::LEN]);
             for (entry, bucket) in entries.iter_mut().zip(buckets).take(S::f32s::LEN) {
                 *entry = self.table.entry(bucket);
             }

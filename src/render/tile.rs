@@ -182,12 +182,16 @@ impl Worker {
         let run = if frame.settings.visibility == Visibility::Certified { RUN } else { rays.max(1) };
         for first in (0..rays).step_by(run) {
             shade::shade(simd, frame, level, first..(first + run).min(rays), self);
+            if self.shadows.iter().all(|queue| queue.len() == 0) {
+                continue;
+            }
             let shaded = Instant::now();
             shadow::resolve(simd, frame, level, self);
             self.stats.stages_ms.shade += (shaded - last).as_secs_f64() * 1e3;
             last = Instant::now();
             self.stats.stages_ms.shadow += (last - shaded).as_secs_f64() * 1e3;
         }
+        self.stats.stages_ms.shade += milliseconds_since(last);
     }
 
     /// Lets the rays that follow wait, mirrored ones next.
