@@ -26,12 +26,14 @@ pub(super) fn render_pass<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, work
     }
 }
 
-/// Fills in what is seen, not the colours.
+/// Fills in what is seen, not the colours, for planes alone: the pixels are counted by the passes that make the picture.
 pub(super) fn find_all<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
+    let (pixels, certificates) = (worker.stats.pixels, worker.stats.certificates);
     match frame.settings.visibility {
         Visibility::Certified => certified::find(simd, frame, pass, worker),
         Visibility::Full | Visibility::Subsample => full::find(simd, frame, pass, worker),
     }
+    (worker.stats.pixels, worker.stats.certificates) = (pixels, certificates);
     super::shade::store_seen(simd, frame, worker);
 }
 
