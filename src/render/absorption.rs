@@ -17,11 +17,10 @@ use glam::Vec3;
 pub(super) fn absorb<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
     let Worker { rays, media, .. } = worker;
     for at in (0..rays.len()).step_by(S::f32s::LEN) {
-        let lists = &rays.media[at..at + S::f32s::LEN];
-        let lanes = S::u32s::from_slice(simd, lists);
+        let lanes = S::u32s::from_slice(simd, &rays.media[at..at + S::f32s::LEN]);
         let mut left = lanes.simd_ne(OUTSIDE).to_bitmask() & present::<S>(rays, at);
         while left != 0 {
-            let list = lists[left.trailing_zeros() as usize];
+            let list = lanes.as_slice()[left.trailing_zeros() as usize];
             let same = lanes.simd_eq(list);
             left &= !same.to_bitmask();
             let absorption = media.current(list).map_or(Vec3::ZERO, |body| absorption_of(frame.scene, body));
@@ -30,8 +29,8 @@ pub(super) fn absorb<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
                 let t = S::f32s::from_slice(simd, &rays.t[at..at + S::f32s::LEN]);
                 let length = missed.select(S::f32s::splat(simd, f32::INFINITY), t);
                 let left = transmittance(simd, absorption, length);
-                let weight: V3<S::f32s> = rays.weight.load(simd, at);
-                rays.weight.store::<S>(at, V3::select(same, weight * left, weight));
+                let weight: V3<S::f32s> = rays.weights(simd, at);
+                rays.weights_mut().store::<S>(at, V3::select(same, weight * left, weight));
             }
         }
     }

@@ -38,7 +38,7 @@ impl<S: Simd> Reflectance<S> {
     pub fn gather(
         simd: S,
         frame: &Frame<'_>,
-        materials: &Materials<'_, S>,
+        materials: &impl Materials<S>,
         color: V3<S::f32s>,
         opacity: V3<S::f32s>,
     ) -> Self {

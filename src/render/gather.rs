@@ -5,11 +5,11 @@
 //! else is in the packet.
 
 use super::frame::Frame;
-use super::materials::Materials;
+use super::materials::{Materials, MixedMaterials};
 use super::queue::MOST_LANES;
 use super::tables::Row;
 use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, SurfacePoint, Triangle, for_each_primitive};
-use crate::geometry::{BLOCK, Block, Geometry, NO_PRIMITIVE, PrimitiveKind, Rays, Slot};
+use crate::geometry::{BLOCK, Block, Geometry, NO_PRIMITIVE, PrimitiveIndex, PrimitiveKind, Rays, Slot};
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -98,9 +98,53 @@ pub(super) struct Surfaces<S: Simd> {
     pub flat: u64,
 }
 
-/// The surfaces at distances `t`.
+/// The surfaces at distances `t`, of one primitive or of several.
 #[inline(always)]
 pub(super) fn surfaces<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    hits: &Hits<'_>,
+    origin: V3<S::f32s>,
+    direction: V3<S::f32s>,
+    t: S::f32s,
+) -> Surfaces<S> {
+    match hits.common {
+        Some(primitive) => surfaces_of_one(simd, frame, hits, primitive, origin, direction, t),
+        None => surfaces_of_several(simd, frame, hits, origin, direction, t),
+    }
+}
+
+/// [`surfaces`] where all rays that hit anything hit one `primitive`.
+#[inline(always)]
+pub(super) fn surfaces_of_one<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    hits: &Hits<'_>,
+    primitive: PrimitiveIndex,
+    origin: V3<S::f32s>,
+    direction: V3<S::f32s>,
+    t: S::f32s,
+) -> Surfaces<S> {
+    let geometry = &frame.scene.geometry;
+    let slot = geometry.slots[primitive as usize];
+    let point = surface_of_one(simd, geometry, slot, origin, direction, t);
+    let mut surfaces = Surfaces {
+        point,
+        shading_normal: point.normal,
+        weights: [S::f32s::splat(simd, 0.0); 3],
+        flat: if slot.kind.is_flat() { hits.active } else { 0 },
+    };
+    if frame.plan.vertex_attributes && slot.kind == PrimitiveKind::Triangle {
+        let fields = geometry.triangles[slot.block as usize].splat(simd, slot.place.into());
+        surfaces.weights = Triangle::barycentric(&fields, &Rays::new(origin, direction));
+        interpolate_normals(simd, frame, hits, &mut surfaces);
+    }
+    surfaces
+}
+
+/// [`surfaces`] where rays hit more than one primitive.
+#[inline(always)]
+pub(super) fn surfaces_of_several<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     hits: &Hits<'_>,
@@ -183,11 +227,9 @@ impl Places {
     fn new(geometry: &Geometry, hits: &Hits<'_>) -> Self {
         let slot = geometry.slots[hits.primitives[hits.first()] as usize];
         let mut places = Self { slots: [slot; MOST_LANES], kinds: [slot.kind as u32; MOST_LANES] };
-        if hits.common.is_none() {
-            for lane in hits.lanes() {
-                let slot = geometry.slots[hits.primitives[lane] as usize];
-                (places.slots[lane], places.kinds[lane]) = (slot, slot.kind as u32);
-            }
+        for lane in hits.lanes() {
+            let slot = geometry.slots[hits.primitives[lane] as usize];
+            (places.slots[lane], places.kinds[lane]) = (slot, slot.kind as u32);
         }
         places
     }
@@ -209,9 +251,6 @@ impl Group<'_> {
     /// Of the lanes `among`, those that hit this type.
     #[inline(always)]
     fn lanes<S: Simd>(&self, simd: S, among: u64) -> u64 {
-        if self.hits.common.is_some() {
-            return among;
-        }
         let kinds = S::u32s::from_slice(simd, &self.places.kinds[..S::f32s::LEN]);
         among & kinds.simd_eq(S::u32s::splat(simd, self.places.kinds[self.first])).to_bitmask()
     }
@@ -222,9 +261,6 @@ impl Group<'_> {
         let slots = &self.places.slots;
         let first = slots[self.first];
         let mut fields: [S::f32s; N] = blocks[first.block as usize].splat(simd, first.place.into());
-        if self.hits.common.is_some() {
-            return fields;
-        }
         let primitives = S::u32s::from_slice(simd, self.hits.primitives);
         let mut left = lanes & !primitives.simd_eq(self.hits.primitives[self.first]).to_bitmask();
         for _ in 1..FEW {
@@ -277,6 +313,20 @@ macro_rules! define_surface {
                 }
             }
         }
+
+        /// The surfaces of the primitive in a slot.
+        #[inline(always)]
+        fn surface_of_one<S: Simd>(
+            simd: S, geometry: &Geometry, slot: Slot, origin: V3<S::f32s>, direction: V3<S::f32s>, t: S::f32s,
+        ) -> SurfacePoint<S::f32s> {
+            match slot.kind {
+                $(PrimitiveKind::$kernel => {
+                    let fields: [S::f32s; $fields] =
+                        geometry.$blocks[slot.block as usize].splat(simd, slot.place.into());
+                    $kernel::surface(&fields, origin, direction, t)
+                })+
+            }
+        }
     };
 }
 for_each_primitive!(define_surface);
@@ -295,7 +345,7 @@ pub(super) fn transmission<S: Simd>(
     if hits.active == 0 {
         return one;
     }
-    let materials = Materials::new(simd, frame, &hits);
+    let materials = MixedMaterials::new(simd, frame, &hits);
     let mut color = materials.triple(simd, Row::Color);
     if frame.plan.textures && materials.any(|m| m.color_texture.is_some()) {
         let surfaces = surfaces(simd, frame, &hits, origin, direction, t);

@@ -4,6 +4,7 @@ use super::frame::Frame;
 use super::gather::{Hits, Surfaces};
 use super::queue::MOST_LANES;
 use super::tables::{FlatMaterial, Row};
+use crate::geometry::PrimitiveIndex;
 use crate::math::V3;
 use crate::scene::object::Mapping;
 use fearless_simd::Simd;
@@ -13,8 +14,73 @@ use glam::Vec2;
 /// Lane mask of native width.
 type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
 
+/// What the surfaces that a packet hit are made of.
+pub(super) trait Materials<S: Simd> {
+    /// Whether any material passes a test.
+    fn any(&self, test: impl Fn(&FlatMaterial) -> bool) -> bool;
+
+    /// The lanes whose material passes a test.
+    fn lanes(&self, simd: S, test: impl Fn(&FlatMaterial) -> bool) -> Mask<S>;
+
+    /// One number of every lane's material.
+    fn row(&self, simd: S, row: usize) -> S::f32s;
+
+    /// Three numbers in a row.
+    #[inline(always)]
+    fn triple(&self, simd: S, first: Row) -> V3<S::f32s> {
+        let row = first as usize;
+        V3::new(self.row(simd, row), self.row(simd, row + 1), self.row(simd, row + 2))
+    }
+
+    /// Replaces the colours and emissions of textured lanes by what their textures hold.
+    #[inline(always)]
+    fn look_up(
+        &self,
+        simd: S,
+        frame: &Frame<'_>,
+        hits: &Hits<'_>,
+        surfaces: &Surfaces<S>,
+        color: &mut V3<S::f32s>,
+        emission: &mut V3<S::f32s>,
+    ) {
+        let textured = self.lanes(simd, FlatMaterial::is_textured).to_bitmask() & hits.active;
+        simd.vectorize(
+            #[inline(always)]
+            || look_up(simd, frame, hits, surfaces, textured, color, emission),
+        );
+    }
+}
+
+/// All lanes' surfaces are of one material.
+pub(super) struct OneMaterial<'a>(&'a FlatMaterial);
+
+impl<'a> OneMaterial<'a> {
+    /// The material of a primitive.
+    #[inline(always)]
+    pub fn of(frame: &Frame<'a>, primitive: PrimitiveIndex) -> Self {
+        Self(&frame.tables.materials[frame.tables.material_of[primitive as usize] as usize])
+    }
+}
+
+impl<S: Simd> Materials<S> for OneMaterial<'_> {
+    #[inline(always)]
+    fn any(&self, test: impl Fn(&FlatMaterial) -> bool) -> bool {
+        test(self.0)
+    }
+
+    #[inline(always)]
+    fn lanes(&self, simd: S, test: impl Fn(&FlatMaterial) -> bool) -> Mask<S> {
+        Mask::<S>::splat(simd, test(self.0))
+    }
+
+    #[inline(always)]
+    fn row(&self, simd: S, row: usize) -> S::f32s {
+        S::f32s::splat(simd, self.0.rows[row])
+    }
+}
+
 /// Materials of a packet's hits, each once.
-pub(super) struct Materials<'a, S: Simd> {
+pub(super) struct MixedMaterials<'a, S: Simd> {
     /// That of the first hit, and of lanes without a hit.
     first: &'a FlatMaterial,
     /// The others, with the lanes that have them.
@@ -23,7 +89,8 @@ pub(super) struct Materials<'a, S: Simd> {
     count: usize,
 }
 
-impl<'a, S: Simd> Materials<'a, S> {
+impl<'a, S: Simd> MixedMaterials<'a, S> {
+    /// The materials of what was hit; something was.
     #[inline(always)]
     pub fn new(simd: S, frame: &Frame<'a>, hits: &Hits<'_>) -> Self {
         let (table, material_of) = (&frame.tables.materials, &frame.tables.material_of);
@@ -47,10 +114,11 @@ impl<'a, S: Simd> Materials<'a, S> {
         }
         materials
     }
+}
 
-    /// Whether any material passes a test.
+impl<S: Simd> Materials<S> for MixedMaterials<'_, S> {
     #[inline(always)]
-    pub fn any(&self, test: impl Fn(&FlatMaterial) -> bool) -> bool {
+    fn any(&self, test: impl Fn(&FlatMaterial) -> bool) -> bool {
         let mut passes = test(self.first);
         for (material, _) in &self.others[..self.count] {
             passes |= test(material);
@@ -58,9 +126,8 @@ impl<'a, S: Simd> Materials<'a, S> {
         passes
     }
 
-    /// The lanes whose material passes a test.
     #[inline(always)]
-    pub fn lanes(&self, simd: S, test: impl Fn(&FlatMaterial) -> bool) -> Mask<S> {
+    fn lanes(&self, simd: S, test: impl Fn(&FlatMaterial) -> bool) -> Mask<S> {
         let mut lanes = Mask::<S>::splat(simd, test(self.first));
         for (material, mask) in &self.others[..self.count] {
             if test(material) {
@@ -72,38 +139,13 @@ impl<'a, S: Simd> Materials<'a, S> {
         lanes
     }
 
-    /// One number of every lane's material.
     #[inline(always)]
-    pub fn row(&self, simd: S, row: usize) -> S::f32s {
+    fn row(&self, simd: S, row: usize) -> S::f32s {
         let mut value = S::f32s::splat(simd, self.first.rows[row]);
         for (material, mask) in &self.others[..self.count] {
             value = mask.select(S::f32s::splat(simd, material.rows[row]), value);
         }
         value
-    }
-
-    /// Three numbers in a row.
-    #[inline(always)]
-    pub fn triple(&self, simd: S, first: Row) -> V3<S::f32s> {
-        let row = first as usize;
-        V3::new(self.row(simd, row), self.row(simd, row + 1), self.row(simd, row + 2))
-    }
-
-    /// Replaces the colours and emissions of textured lanes by what their textures hold.
-    pub fn look_up(
-        &self,
-        simd: S,
-        frame: &Frame<'_>,
-        hits: &Hits<'_>,
-        surfaces: &Surfaces<S>,
-        color: &mut V3<S::f32s>,
-        emission: &mut V3<S::f32s>,
-    ) {
-        let textured = self.lanes(simd, FlatMaterial::is_textured).to_bitmask() & hits.active;
-        simd.vectorize(
-            #[inline(always)]
-            || look_up(simd, frame, hits, surfaces, textured, color, emission),
-        );
     }
 }
 
@@ -120,12 +162,16 @@ fn look_up<S: Simd>(
 ) {
     let ids = &frame.scene.geometry.ids;
     let id = ids[hits.primitives[hits.first()] as usize];
+    if hits.common.is_some() {
+        let sides = Mask::<S>::splat(simd, id.primitive == 0);
+        let found = look_up_object(simd, frame, hits, surfaces, id.object, sides, textured, [*color, *emission]);
+        [*color, *emission] = found;
+        return;
+    }
     let (mut objects, mut parts) = ([id.object; MOST_LANES], [id.primitive; MOST_LANES]);
-    if hits.common.is_none() {
-        for lane in hits.lanes() {
-            let id = ids[hits.primitives[lane] as usize];
-            (objects[lane], parts[lane]) = (id.object, id.primitive);
-        }
+    for lane in hits.lanes() {
+        let id = ids[hits.primitives[lane] as usize];
+        (objects[lane], parts[lane]) = (id.object, id.primitive);
     }
     let lanes = S::u32s::from_slice(simd, &objects[..S::f32s::LEN]);
     let sides = S::u32s::from_slice(simd, &parts[..S::f32s::LEN]).simd_eq(0);
@@ -135,23 +181,42 @@ fn look_up<S: Simd>(
         let same = lanes.simd_eq(number);
         let members = same.to_bitmask() & left;
         left &= !members;
+        let [found, given_off] =
+            look_up_object(simd, frame, hits, surfaces, number, sides, members, [*color, *emission]);
+        *color = V3::select(same, found, *color);
+        *emission = V3::select(same, given_off, *emission);
+    }
+}
 
-        let object = &frame.scene.objects[number as usize];
-        let own = if object.mapping == Mapping::Vertex {
-            vertex_coordinates(simd, frame, hits, surfaces)
-        } else {
-            [S::f32s::splat(simd, 0.0); 2]
-        };
-        let point = &surfaces.point;
-        let coordinates = object.texture_coordinates(simd, point.position, point.normal, sides, own);
-        let material = &frame.tables.materials[object.material as usize];
-        for (texture, into) in [(material.color_texture, &mut *color), (material.emission_texture, &mut *emission)] {
-            if let Some(texture) = texture {
-                let found = frame.scene.textures[texture as usize].sample(simd, coordinates, members);
-                *into = V3::select(same, found, *into);
-            }
+/// Colour and emission as the textures of object `number` have them, otherwise as they were. `sides` are the lanes that
+/// hit its first primitive; only the lanes in the bit set `members` matter.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what is known of one object's lanes")]
+fn look_up_object<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    hits: &Hits<'_>,
+    surfaces: &Surfaces<S>,
+    number: u32,
+    sides: Mask<S>,
+    members: u64,
+    mut found: [V3<S::f32s>; 2],
+) -> [V3<S::f32s>; 2] {
+    let object = &frame.scene.objects[number as usize];
+    let own = if object.mapping == Mapping::Vertex {
+        vertex_coordinates(simd, frame, hits, surfaces)
+    } else {
+        [S::f32s::splat(simd, 0.0); 2]
+    };
+    let point = &surfaces.point;
+    let coordinates = object.texture_coordinates(simd, point.position, point.normal, sides, own);
+    let material = &frame.tables.materials[object.material as usize];
+    for (texture, into) in [material.color_texture, material.emission_texture].into_iter().zip(&mut found) {
+        if let Some(texture) = texture {
+            *into = frame.scene.textures[texture as usize].sample(simd, coordinates, members);
         }
     }
+    found
 }
 
 /// Texture coordinates that the corners of triangles carry, interpolated; 0 where they carry none.

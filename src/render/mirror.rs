@@ -55,6 +55,7 @@ pub(super) fn closest_hits<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Wor
         if let Some(view) = view {
             trace::secondary_range(simd, &search, traced..run.start, worker);
             traced = run.end;
+            worker.stats.certificates.mirrored += run.len() as u64;
             view.find(simd, run, &mut lists, worker);
         }
     }
@@ -163,7 +164,7 @@ impl<'a> View<'a> {
             let extent = Extent::of(simd, &self.projection, &rays.origin, Some(&rays.direction), own.clone());
             let candidates = match extent {
                 Some(extent) => {
-                    part.filter(simd, self.search.geometry, whole, &self.beam(&extent));
+                    part.filter(simd, whole, &self.beam(&extent));
                     &*part
                 }
                 None => &*whole,

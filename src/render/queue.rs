@@ -110,10 +110,14 @@ impl Columns {
 /// Rays of one level of the paths of a tile, and what they hit.
 #[derive(Clone, Debug, Default)]
 pub struct RayQueue {
+    /// Where all rays start, if they are rays from the eye: the origins' columns then hold nothing.
+    eye: Option<Vec3>,
     pub origin: Columns,
     pub direction: Columns,
+    /// All rays have full weight: the weights' columns then hold nothing.
+    unweighted: bool,
     /// What the ray's light is multiplied by on its way to the pixel.
-    pub weight: Columns,
+    weight: Columns,
     /// Which sample of the tile it belongs to.
     pub sample: Vec<u32>,
     /// The bodies it starts in.
@@ -135,7 +139,31 @@ impl RayQueue {
 
     /// Empties the queue; its memory stays.
     pub fn clear(&mut self) {
-        self.len = 0;
+        (self.len, self.eye, self.unweighted) = (0, None, false);
+    }
+
+    /// Where the rays of the packet at `at` start.
+    #[inline(always)]
+    pub fn origins<S: Simd>(&self, simd: S, at: usize) -> V3<S::f32s> {
+        match self.eye {
+            Some(eye) => V3::splat(simd, eye),
+            None => self.origin.load(simd, at),
+        }
+    }
+
+    /// What the light of the rays of the packet at `at` is multiplied by on its way to the pixel.
+    #[inline(always)]
+    pub fn weights<S: Simd>(&self, simd: S, at: usize) -> V3<S::f32s> {
+        if self.unweighted { V3::splat(simd, Vec3::ONE) } else { self.weight.load(simd, at) }
+    }
+
+    /// The columns of the weights, all of them filled.
+    pub fn weights_mut(&mut self) -> &mut Columns {
+        if self.unweighted {
+            self.weight.fill(0..self.len + MOST_LANES, Vec3::ONE);
+            self.unweighted = false;
+        }
+        &mut self.weight
     }
 
     /// Makes room for `rays` in all.
@@ -152,19 +180,6 @@ impl RayQueue {
             self.t.resize(room, 0.0);
             self.primitive.resize(room, NO_PRIMITIVE);
         }
-    }
-
-    /// Appends a ray.
-    #[inline]
-    pub fn push(&mut self, origin: Vec3, direction: Vec3, weight: Vec3, sample: u32, media: u32) {
-        let at = self.len;
-        self.reserve(at + 1);
-        self.origin.set(at, origin);
-        self.direction.set(at, direction);
-        self.weight.set(at, weight);
-        self.sample[at] = sample;
-        self.media[at] = media;
-        self.len += 1;
     }
 
     /// Appends the masked lanes, in order; there must be room for all lanes.
@@ -187,15 +202,12 @@ impl RayQueue {
         self.len += count::<S>(mask);
     }
 
-    /// Appends `count` rays of full weight from one origin, to be aimed; returns the first one's place.
-    pub fn extend_from(&mut self, origin: Vec3, media: u32, count: usize) -> usize {
+    /// Appends `count` rays of full weight from the eye, to be aimed, to a queue of such; returns the first one's place.
+    pub fn extend_from_eye(&mut self, eye: Vec3, media: u32, count: usize) -> usize {
         let first = self.len;
         self.reserve(first + count);
-        let new = first..first + count;
-        self.origin.fill(new.clone(), origin);
-        self.weight.fill(new.clone(), Vec3::ONE);
-        self.media[new.clone()].fill(media);
-        self.len = new.end;
+        (self.len, self.eye, self.unweighted) = (first + count, Some(eye), true);
+        self.media[first..first + count].fill(media);
         first
     }
 
@@ -222,23 +234,21 @@ impl RayQueue {
 }
 
 impl RayQueue {
-    /// Appends all rays of another queue, with their hits.
+    /// Appends all rays of another queue, with their hits. Both must hold rays from the eye.
     pub fn append(&mut self, other: &Self) {
-        for at in 0..other.len {
-            self.copy_in(other, at);
+        let (first, count) = (self.len, other.len);
+        if count == 0 {
+            return;
         }
-    }
-
-    fn copy_in(&mut self, other: &Self, at: usize) {
-        let to = self.len;
-        self.push(
-            other.origin.get(at),
-            other.direction.get(at),
-            other.weight.get(at),
-            other.sample[at],
-            other.media[at],
-        );
-        (self.t[to], self.primitive[to]) = (other.t[at], other.primitive[at]);
+        self.reserve(first + count);
+        (self.len, self.eye, self.unweighted) = (first + count, other.eye, other.unweighted);
+        for (to, from) in self.direction.columns_mut().into_iter().zip(other.direction.columns()) {
+            to[first..first + count].copy_from_slice(&from[..count]);
+        }
+        self.sample[first..first + count].copy_from_slice(&other.sample[..count]);
+        self.media[first..first + count].copy_from_slice(&other.media[..count]);
+        self.t[first..first + count].copy_from_slice(&other.t[..count]);
+        self.primitive[first..first + count].copy_from_slice(&other.primitive[..count]);
     }
 
     /// Marks the rays from `first` on as hitting nothing.
@@ -248,15 +258,14 @@ impl RayQueue {
         self.t[missed].fill(f32::INFINITY);
     }
 
-    /// Keeps the rays that `keep(sample, primitive)` wants, in order, looking only at those from `first` on.
+    /// Keeps the rays that `keep(sample, primitive)` wants, in order, looking only at those from `first` on. All must be
+    /// rays from the eye.
     pub fn retain_from(&mut self, first: usize, mut keep: impl FnMut(u32, u32) -> bool) {
         let mut to = first;
         for at in first..self.len {
             if keep(self.sample[at], self.primitive[at]) {
-                for columns in [&mut self.origin, &mut self.direction, &mut self.weight] {
-                    let ray = columns.get(at);
-                    columns.set(to, ray);
-                }
+                let direction = self.direction.get(at);
+                self.direction.set(to, direction);
                 self.sample[to] = self.sample[at];
                 self.media[to] = self.media[at];
                 self.t[to] = self.t[at];
@@ -268,7 +277,7 @@ impl RayQueue {
     }
 }
 
-/// Shaded rays whose shadow rays follow each other in one of [`ShadowQueue::runs`].
+/// Rays that are shaded, and whose shadow rays are resolved, before the next ones are.
 pub const RUN: usize = 256;
 
 /// Shadow rays towards one light.

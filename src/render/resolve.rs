@@ -29,18 +29,32 @@ impl Encoder {
             ToneMap::None => exposed,
             ToneMap::Neutral => neutral(simd, exposed),
         };
-        let (mut bits, mut buckets) = ([[0; MOST_LANES]; 3], [[0; MOST_LANES]; 3]);
-        for (channel, lanes) in [mapped.x, mapped.y, mapped.z].into_iter().enumerate() {
-            let clamped = SrgbTable::clamp(simd, lanes);
-            clamped.store_slice(&mut bits[channel][..S::f32s::LEN]);
-            SrgbTable::buckets::<S>(clamped).store_slice(&mut buckets[channel][..S::f32s::LEN]);
+        let mut bits = [S::u32s::splat(simd, 0); 3];
+        let mut flat = true;
+        for (bits, lanes) in bits.iter_mut().zip([mapped.x, mapped.y, mapped.z]) {
+            *bits = SrgbTable::clamp(simd, lanes);
+            flat &= bits.simd_eq(bits[0]).all_true();
+        }
+        let mut entries = [[0; MOST_LANES]; 3];
+        for (entries, &bits) in entries.iter_mut().zip(&bits) {
+            if flat {
+                // As backgrounds are.
+                *entries = [self.table.entry(SrgbTable::buckets::<S>(bits)[0]); MOST_LANES];
+                continue;
+            }
+            let mut buckets = [0; MOST_LANES];
+            SrgbTable::buckets::<S>(bits).store_slice(&mut buckets[..S::f32s::LEN]);
+            for (entry, bucket) in entries.iter_mut().zip(buckets).take(S::f32s::LEN) {
+                *entry = self.table.entry(bucket);
+            }
+        }
+        let mut rgba = S::u32s::splat(simd, u32::from_le_bytes([0, 0, 0, 255]));
+        for (channel, (bits, entries)) in bits.into_iter().zip(&entries).enumerate() {
+            let entries = S::u32s::from_slice(simd, &entries[..S::f32s::LEN]);
+            rgba |= SrgbTable::bytes::<S>(entries, bits) << (8 * channel as u32);
         }
         let mut pixels = [[0; 4]; MOST_LANES];
-        for (lane, pixel) in pixels.iter_mut().enumerate().take(S::f32s::LEN) {
-            let mut rgba = u32::from_le_bytes([0, 0, 0, 255]);
-            for channel in 0..3 {
-                rgba |= self.table.encode(buckets[channel][lane], bits[channel][lane]) << (8 * channel);
-            }
+        for (pixel, rgba) in pixels.iter_mut().zip(rgba.as_slice()) {
             *pixel = rgba.to_le_bytes();
         }
         pixels
@@ -73,8 +87,9 @@ fn neutral<S: Simd>(simd: S, color: V3<S::f32s>) -> V3<S::f32s> {
 ///
 /// Buckets are as wide as 2^-7 of their octave: then none holds more than one change (after Giesen, "Float->sRGB8
 /// conversions", 2012). Value and byte lie in one number, so that one addition compares with the one and carries into
-/// the other: the upper half is the byte, the lower one 2^32 less the bits of the next byte's least value.
-struct SrgbTable([u64; Self::ROOM]);
+/// the other: the upper half is the byte, the lower one 2^16 less the lower half of the bits of the next byte's least
+/// value, or 0 where the bucket does not hold that value.
+struct SrgbTable([u32; Self::ROOM]);
 
 static SRGB: LazyLock<SrgbTable> = LazyLock::new(|| {
     let mut byte = 0;
@@ -83,7 +98,8 @@ static SRGB: LazyLock<SrgbTable> = LazyLock::new(|| {
         while least_linear(byte + 1).to_bits() <= start {
             byte += 1;
         }
-        (u64::from(byte) << 32) + ((1 << 32) - u64::from(least_linear(byte + 1).to_bits()))
+        let missing = least_linear(byte + 1).to_bits() - start;
+        (byte << SrgbTable::SHIFT) + (1_u32 << SrgbTable::SHIFT).saturating_sub(missing)
     }))
 });
 
@@ -119,10 +135,16 @@ impl SrgbTable {
         (bits - Self::LEAST) >> Self::SHIFT
     }
 
-    /// Encodes the bits of a clamped linear value to the nearest sRGB byte (IEC 61966-2-1).
+    /// What the table holds for a bucket.
     #[inline(always)]
-    fn encode(&self, bucket: u32, bits: u32) -> u32 {
-        ((self.0[bucket as usize % Self::ROOM] + u64::from(bits)) >> 32) as u32
+    fn entry(&self, bucket: u32) -> u32 {
+        self.0[bucket as usize % Self::ROOM]
+    }
+
+    /// The nearest sRGB bytes (IEC 61966-2-1) of clamped linear values, from their buckets' entries.
+    #[inline(always)]
+    fn bytes<S: Simd>(entries: S::u32s, bits: S::u32s) -> S::u32s {
+        (entries + (bits & ((1 << Self::SHIFT) - 1))) >> Self::SHIFT
     }
 }
 

@@ -64,7 +64,7 @@ pub(super) fn follow<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     hits: &Hits<'_>,
-    materials: &Materials<'_, S>,
+    materials: &impl Materials<S>,
     incident: &Incident<S>,
     media: &mut Media,
     [mirrored, refracted]: [&mut RayQueue; 2],
@@ -123,7 +123,7 @@ fn hold_unit<S: Simd>(v: V3<S::f32s>) -> V3<S::f32s> {
 
 impl Transparent {
     #[inline(always)]
-    fn new<S: Simd>(simd: S, frame: &Frame<'_>, hits: &Hits<'_>, materials: &Materials<'_, S>, spawning: u64) -> Self {
+    fn new<S: Simd>(simd: S, frame: &Frame<'_>, hits: &Hits<'_>, materials: &impl Materials<S>, spawning: u64) -> Self {
         let mut found = Self { lanes: 0, bodies: 0, objects: [0; MOST_LANES] };
         if !frame.plan.coloured_shadows {
             return found;
@@ -186,7 +186,7 @@ fn outside_index<S: Simd>(
 #[inline(always)]
 fn refract<S: Simd>(
     simd: S,
-    materials: &Materials<'_, S>,
+    materials: &impl Materials<S>,
     incident: &Incident<S>,
     cosine: S::f32s,
     outside: S::f32s,
@@ -231,7 +231,7 @@ fn dielectric_fresnel<S: Simd>(cosine_in: S::f32s, cosine_out: S::f32s, eta: S::
 fn mirror_share<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
-    materials: &Materials<'_, S>,
+    materials: &impl Materials<S>,
     color: V3<S::f32s>,
     cosine: S::f32s,
 ) -> V3<S::f32s> {

@@ -4,59 +4,50 @@ use super::absorption::absorb;
 use super::brdf::Reflectance;
 use super::direct::{Lit, light_gain};
 use super::frame::Frame;
-use super::gather::{Hits, Surfaces, surfaces};
+use super::gather::{Hits, Surfaces, surfaces, surfaces_of_one, surfaces_of_several};
 use super::leave;
-use super::materials::Materials;
-use super::queue::{RUN, RayQueue, ShadowPacket, ShadowQueue};
+use super::materials::{Materials, MixedMaterials, OneMaterial};
+use super::queue::{RayQueue, ShadowPacket};
 use super::secondary::{self, Incident};
 use super::tables::{FlatMaterial, Row};
 use super::tile::{Seen, Worker};
-use crate::geometry::NO_PRIMITIVE;
+use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex};
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use std::ops::Range;
 
 /// Lane mask of native width.
 type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
 
-/// Shades the hits in `worker.rays`; leaves shadow rays in `worker.shadows`, and rays of the next level in
-/// `worker.mirrored` and `worker.refracted`.
-pub(super) fn shade<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &mut Worker) {
-    worker.make_room();
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            if frame.plan.absorption {
-                absorb(simd, frame, worker);
-            }
-            for at in (0..worker.rays.len()).step_by(S::f32s::LEN) {
-                if at % RUN == 0 {
-                    mark_runs(&mut worker.shadows);
-                }
-                shade_packet(simd, frame, level, at, worker);
-            }
-            mark_runs(&mut worker.shadows);
-        },
-    );
-}
-
-impl Worker {
-    /// Makes room for all that the hits in `rays` may be followed by.
-    fn make_room(&mut self) {
-        for queue in &mut self.shadows {
-            queue.clear();
-            queue.reserve(self.rays.len());
-        }
-        for queue in [&mut self.mirrored, &mut self.refracted] {
-            queue.clear();
-            queue.reserve(self.rays.len());
-        }
+/// Makes ready for shading the hits in `worker.rays`.
+pub(super) fn begin<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
+    for queue in [&mut worker.mirrored, &mut worker.refracted] {
+        queue.clear();
+        queue.reserve(worker.rays.len());
+    }
+    if frame.plan.absorption {
+        absorb(simd, frame, worker);
     }
 }
 
-/// Begins the next run of shadow rays towards every light.
-fn mark_runs(shadows: &mut [ShadowQueue]) {
-    for queue in shadows {
+/// Shades a run of the hits in `worker.rays`, which begins with a packet; leaves shadow rays in `worker.shadows`, and
+/// appends rays of the next level to `worker.mirrored` and `worker.refracted`.
+pub(super) fn shade<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, run: Range<usize>, worker: &mut Worker) {
+    for queue in &mut worker.shadows {
+        queue.clear();
+        queue.reserve(run.len());
+        queue.mark_run();
+    }
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for at in run.step_by(S::f32s::LEN) {
+                shade_packet(simd, frame, level, at, worker);
+            }
+        },
+    );
+    for queue in &mut worker.shadows {
         queue.mark_run();
     }
 }
@@ -70,36 +61,109 @@ pub(super) fn present<S: Simd>(rays: &RayQueue, at: usize) -> u64 {
 #[inline(always)]
 fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, worker: &mut Worker) {
     let lanes = at..at + S::f32s::LEN;
-    let Worker { rays, mirrored, refracted, shadows, media, color: colors, seen, stats, .. } = worker;
-    let hits = Hits::new(simd, &rays.primitive[lanes.clone()]);
-    let (samples, present) = (&rays.sample[lanes.clone()], present::<S>(rays, at));
-    let weight: V3<S::f32s> = rays.weight.load(simd, at);
-    let background = weight * V3::splat(simd, frame.scene.render.background);
+    let hits = Hits::new(simd, &worker.rays.primitive[lanes.clone()]);
     if hits.active == 0 {
-        colors.deposit(simd, level == 1, samples, present, background);
-        return;
+        let Worker { rays, color, .. } = worker;
+        let background = rays.weights(simd, at) * V3::splat(simd, frame.scene.render.background);
+        color.deposit(simd, level == 1, &rays.sample[lanes], present::<S>(rays, at), background);
+    } else if let Some(primitive) = hits.common {
+        // Nearly all packets are such: apart from the others they need no masks and no loops over what else was hit.
+        simd.vectorize(
+            #[inline(always)]
+            || shade_one(simd, frame, level, at, primitive, worker),
+        );
+    } else {
+        simd.vectorize(
+            #[inline(always)]
+            || shade_several(simd, frame, level, at, worker),
+        );
     }
-    let (origin, direction) = (rays.origin.load::<S>(simd, at), rays.direction.load::<S>(simd, at));
-    let t = S::f32s::from_slice(simd, &rays.t[lanes.clone()]);
-    let surfaces = surfaces(simd, frame, &hits, origin, direction, t);
-    let view = View::new(simd, &surfaces, direction);
+}
+
+/// Shades the packet at `at`, whose hits are all of one primitive.
+#[inline(always)]
+fn shade_one<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    level: u32,
+    at: usize,
+    primitive: PrimitiveIndex,
+    worker: &mut Worker,
+) {
+    let primitives = S::u32s::from_slice(simd, &worker.rays.primitive[at..at + S::f32s::LEN]);
+    let hits = Hits::new(simd, primitives.as_slice());
+    let rays = Incoming::load(simd, &worker.rays, at);
+    let surfaces = surfaces_of_one(simd, frame, &hits, primitive, rays.origin, rays.direction, rays.t);
+    shade_surfaces(simd, frame, level, at, &hits, &rays, &surfaces, &OneMaterial::of(frame, primitive), worker);
+}
+
+/// Shades the packet at `at`, whose hits are of several primitives.
+#[inline(always)]
+fn shade_several<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, worker: &mut Worker) {
+    let primitives = S::u32s::from_slice(simd, &worker.rays.primitive[at..at + S::f32s::LEN]);
+    let hits = Hits::new(simd, primitives.as_slice());
+    let rays = Incoming::load(simd, &worker.rays, at);
+    let surfaces = surfaces_of_several(simd, frame, &hits, rays.origin, rays.direction, rays.t);
+    let materials = MixedMaterials::new(simd, frame, &hits);
+    shade_surfaces(simd, frame, level, at, &hits, &rays, &surfaces, &materials, worker);
+}
+
+/// A packet of rays that have hit something.
+struct Incoming<S: Simd> {
+    origin: V3<S::f32s>,
+    direction: V3<S::f32s>,
+    t: S::f32s,
+    weight: V3<S::f32s>,
+}
+
+impl<S: Simd> Incoming<S> {
+    #[inline(always)]
+    fn load(simd: S, rays: &RayQueue, at: usize) -> Self {
+        Self {
+            origin: rays.origins(simd, at),
+            direction: rays.direction.load(simd, at),
+            t: S::f32s::from_slice(simd, &rays.t[at..at + S::f32s::LEN]),
+            weight: rays.weights(simd, at),
+        }
+    }
+}
+
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what is known of one packet, some of it at compile time")]
+fn shade_surfaces<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    level: u32,
+    at: usize,
+    hits: &Hits<'_>,
+    incoming: &Incoming<S>,
+    surfaces: &Surfaces<S>,
+    materials: &impl Materials<S>,
+    worker: &mut Worker,
+) {
+    let lanes = at..at + S::f32s::LEN;
+    let Worker { rays, mirrored, refracted, shadows, media, color: colors, seen, stats, .. } = worker;
+    let samples = &rays.sample[lanes.clone()];
+    let &Incoming { direction, weight, .. } = incoming;
+    let view = View::new(simd, surfaces, direction);
     if level == 1 && frame.keeps_normals {
         for lane in hits.lanes() {
             seen[samples[lane] as usize].normal = view.normal.lane(lane).into();
         }
     }
 
-    let materials = Materials::new(simd, frame, &hits);
     let mut color = materials.triple(simd, Row::Color);
     let mut emission = if frame.plan.emission { materials.triple(simd, Row::Emission) } else { V3::zero(simd) };
     if frame.plan.textures && materials.any(FlatMaterial::is_textured) {
-        materials.look_up(simd, frame, &hits, &surfaces, &mut color, &mut emission);
+        materials.look_up(simd, frame, hits, surfaces, &mut color, &mut emission);
     }
     let opacity = materials.triple(simd, Row::Opacity);
     let active = Mask::<S>::from_bitmask(simd, hits.active);
     let ambient = V3::splat(simd, frame.ambient) * materials.triple(simd, Row::Ambient);
     let own = weight * (opacity * ambient * color + emission);
-    colors.deposit(simd, level == 1, samples, present, V3::select(active, own, background));
+    let background = weight * V3::splat(simd, frame.scene.render.background);
+    let own = V3::select(active, own, background);
+    colors.deposit(simd, level == 1, samples, present::<S>(rays, at), own);
 
     let lit = Lit::<S> {
         active,
@@ -110,7 +174,7 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
         to_viewer: -direction,
         weight,
     };
-    let reflectance = Reflectance::gather(simd, frame, &materials, color, opacity);
+    let reflectance = Reflectance::gather(simd, frame, materials, color, opacity);
     let sample = S::u32s::from_slice(simd, samples);
     let primitives = S::u32s::from_slice(simd, hits.primitives);
     // All shapes are flat or, from outside, convex: a ray that leaves their outside does not come back.
@@ -151,8 +215,8 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
                 secondary::follow(
                     simd,
                     frame,
-                    &hits,
-                    &materials,
+                    hits,
+                    materials,
                     &incident,
                     media,
                     [mirrored, refracted],
@@ -211,7 +275,7 @@ fn store_seen_packet<S: Simd>(simd: S, frame: &Frame<'_>, at: usize, rays: &RayQ
     }
     let direction = rays.direction.load::<S>(simd, at);
     let t = S::f32s::from_slice(simd, &rays.t[lanes]);
-    let surfaces = surfaces(simd, frame, &hits, rays.origin.load(simd, at), direction, t);
+    let surfaces = surfaces(simd, frame, &hits, rays.origins(simd, at), direction, t);
     let normal = View::new(simd, &surfaces, direction).normal;
     for lane in hits.lanes() {
         let normal = normal.lane(lane).into();

@@ -4,11 +4,11 @@ use super::extent::Lists;
 use super::film::FilmTile;
 use super::frame::Frame;
 use super::media::{Media, MediaMark};
-use super::queue::{RayQueue, ShadowQueue};
+use super::queue::{RUN, RayQueue, ShadowQueue};
 use super::samples::{Colors, SAMPLES, sample_at};
 use super::{FrameStats, mirror, shade, shadow, trace, visibility};
 use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex, Stack};
-use crate::settings::Supersample;
+use crate::settings::{Supersample, Visibility};
 use fearless_simd::Simd;
 use std::time::Instant;
 
@@ -135,12 +135,14 @@ impl Worker {
         std::mem::swap(&mut self.seen, &mut self.seen_at_centres);
         self.seen.resize(SAMPLES, Seen::NOTHING);
         self.sums.clear();
-        let pixels_before = self.stats.pixels;
+        let (pixels, certificates) = (self.stats.pixels, self.stats.certificates);
         let step = 1.0 / side as f32;
         for row in 0..side {
             for column in 0..side {
                 let offset = [(column as f32 + 0.5) * step, (row as f32 + 0.5) * step];
-                self.stats.pixels = pixels_before;
+                // Each pixel counts once, by its last pass.
+                self.stats.pixels = pixels;
+                self.stats.certificates = certificates;
                 visibility::render_pass(simd, frame, &Pass { offset, ..*centre }, self);
                 self.sums.add_all(&self.color);
             }
@@ -158,14 +160,7 @@ impl Worker {
     pub(super) fn shade_paths<S: Simd>(&mut self, simd: S, frame: &Frame<'_>) {
         let mut level = 1;
         loop {
-            let start = Instant::now();
-            shade::shade(simd, frame, level, self);
-            self.stats.stages_ms.shade += milliseconds_since(start);
-
-            let start = Instant::now();
-            shadow::resolve(simd, frame, level, self);
-            self.stats.stages_ms.shadow += milliseconds_since(start);
-
+            self.shade_level(simd, frame, level);
             self.queue_followers(level + 1);
             if frame.cancel.is_cancelled() {
                 self.spare.extend(self.waiting.drain(..).map(|waiting| waiting.rays));
@@ -184,6 +179,27 @@ impl Worker {
             let certificate = self.stats.stages_ms.certificate - certificate;
             self.stats.stages_ms.secondary += milliseconds_since(start) - certificate;
         }
+    }
+
+    /// Shades the hits in `rays` run by run, each with its shadow rays: they are few enough to stay in the cache.
+    fn shade_level<S: Simd>(&mut self, simd: S, frame: &Frame<'_>, level: u32) {
+        let mut last = Instant::now();
+        shade::begin(simd, frame, self);
+        let rays = self.rays.len();
+        // Rays without certificates gain nothing from being close together, and would leave packets not full.
+        let run = if frame.settings.visibility == Visibility::Certified { RUN } else { rays.max(1) };
+        for first in (0..rays).step_by(run) {
+            shade::shade(simd, frame, level, first..(first + run).min(rays), self);
+            if self.shadows.iter().all(|queue| queue.len() == 0) {
+                continue;
+            }
+            let shaded = Instant::now();
+            shadow::resolve(simd, frame, level, self);
+            self.stats.stages_ms.shade += (shaded - last).as_secs_f64() * 1e3;
+            last = Instant::now();
+            self.stats.stages_ms.shadow += (last - shaded).as_secs_f64() * 1e3;
+        }
+        self.stats.stages_ms.shade += milliseconds_since(last);
     }
 
     /// Lets the rays that follow wait, mirrored ones next.

@@ -61,7 +61,7 @@ fn trace_range<S: Simd>(
         || {
             let (t_min, t_max) = (S::f32s::splat(simd, t_min), S::f32s::splat(simd, t_max));
             for at in range.step_by(S::f32s::LEN) {
-                let packet = Packet::new(search.geometry, rays.origin.load(simd, at), rays.direction.load(simd, at));
+                let packet = Packet::new(search.geometry, rays.origins(simd, at), rays.direction.load(simd, at));
                 let mut visitor = ClosestHit::new(simd, t_min, t_max);
                 search.traverse(simd, &packet, stack, &mut visitor);
                 store_hits(simd, &visitor, rays, at);
@@ -110,7 +110,7 @@ fn for_each_packet<S: Simd>(
     rays.pad();
     let (t_min, t_max) = (S::f32s::splat(simd, t_min), S::f32s::splat(simd, t_max));
     for at in (first..rays.len()).step_by(S::f32s::LEN) {
-        let packet = Packet::new(search.geometry, rays.origin.load(simd, at), rays.direction.load(simd, at));
+        let packet = Packet::new(search.geometry, rays.origins(simd, at), rays.direction.load(simd, at));
         let mut visitor = ClosestHit::new(simd, t_min, t_max);
         find(&packet, &mut visitor);
         store_hits(simd, &visitor, rays, at);

@@ -60,8 +60,9 @@ fn a_cancelled_frame_leaves_nothing_behind() {
         scratch.cancel.reset();
         let stats = render_frame(scene, &camera, &settings, &mut scratch, &mut used);
         assert!(stats.completed, "after {stopped:?}");
+        let pixels = stats.pixels;
         assert_eq!(
-            stats.pixels.traced,
+            pixels.traced + pixels.resolved + pixels.certified + pixels.interpolated,
             u64::from(SIZE.0 * SIZE.1),
             "counts of the cancelled frame are not carried over"
         );

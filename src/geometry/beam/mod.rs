@@ -12,6 +12,8 @@
 //! for what can be dropped, and smaller by as much when it looks for covers.
 
 mod collect;
+#[cfg(test)]
+mod laws;
 mod list;
 mod outline;
 mod projection;

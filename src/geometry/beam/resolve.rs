@@ -1,6 +1,6 @@
 //! The candidates of a beam, tested ray by ray.
 
-use super::list::Candidates;
+use super::list::{Candidates, Member};
 use super::outline::Outline;
 use super::projection::Points;
 use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
@@ -32,14 +32,15 @@ macro_rules! define_resolve {
                         Rays::bare(origin, direction)
                     };
                     for at in 0..candidates.$blocks.len() {
+                        let Member { index, block, place } = candidates.$blocks.member(at);
                         if <$kernel as Outline<$fields, $outline>>::LOOK_FIRST {
                             let outline: [S::f32s; $outline] = candidates.$blocks.outline(simd, at);
-                            if $kernel::is_passed_by(&outline, points, visitor.limit()).all_true() {
+                            let passed_by = $kernel::is_passed_by(&outline, points, visitor.limit());
+                            if (passed_by | visitor.excludes(simd, index)).all_true() {
                                 continue;
                             }
                         }
-                        let (block, place) = candidates.$blocks.place(at);
-                        let index = self.geometry.$blocks[block].indices[place];
+                        let (block, place) = (block as usize, usize::from(place));
                         if visitor.accepts(index) {
                             let t_min = visitor.t_min(index);
                             let (mask, t) = test_place!($kernel, $blocks, self, simd, block, place, &rays, t_min);
@@ -54,18 +55,22 @@ macro_rules! define_resolve {
         }
 
         impl Candidates {
-            /// Whether, by the look of their outlines, no ray can hit any candidate within `limit`.
+            /// Whether, by the look of their outlines, no ray can hit any candidate that matters to `visitor`.
             #[inline(always)]
-            pub fn are_passed_by<S: Simd>(&self, simd: S, points: &Points<S::f32s>, limit: S::f32s) -> bool {
-                $(if !<$kernel as Outline<$fields, $outline>>::LOOK_FIRST && !self.$blocks.is_empty() {
-                    return false;
-                })+
-                $(if <$kernel as Outline<$fields, $outline>>::LOOK_FIRST {
-                    for at in 0..self.$blocks.len() {
+            pub fn are_passed_by<S: Simd, V: Visitor<S>>(
+                &self,
+                simd: S,
+                points: &Points<S::f32s>,
+                visitor: &V,
+            ) -> bool {
+                $(for at in 0..self.$blocks.len() {
+                    let mut passed_by = visitor.excludes(simd, self.$blocks.member(at).index);
+                    if <$kernel as Outline<$fields, $outline>>::LOOK_FIRST {
                         let outline: [S::f32s; $outline] = self.$blocks.outline(simd, at);
-                        if !$kernel::is_passed_by(&outline, points, limit).all_true() {
-                            return false;
-                        }
+                        passed_by |= $kernel::is_passed_by(&outline, points, visitor.limit());
+                    }
+                    if !passed_by.all_true() {
+                        return false;
                     }
                 })+
                 true

@@ -8,18 +8,27 @@ use crate::render::gather;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
+/// Shadow rays on their way.
+pub(super) struct Flight<S: Simd> {
+    pub origin: V3<S::f32s>,
+    /// Unit direction to the light.
+    pub direction: V3<S::f32s>,
+    /// The primitive that each ray leaves for good, or [`NO_PRIMITIVE`].
+    pub sources: S::u32s,
+    /// Where the light is; 0 for rays that are left out.
+    pub limit: S::f32s,
+}
+
 /// What transparent things leave of the light: t·color at each crossing, multiplied in the order of (t, primitive).
-/// Lanes whose `limit` is 0 are left out.
 pub(super) fn transmittance<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     occluders: &Occluders<'_, S>,
-    [origin, direction]: [V3<S::f32s>; 2],
-    sources: S::u32s,
+    flight: &Flight<S>,
     opaque: &[bool],
-    limit: S::f32s,
     stack: &mut Stack,
 ) -> V3<S::f32s> {
+    let &Flight { origin, direction, sources, limit } = flight;
     simd.vectorize(
         #[inline(always)]
         || {

@@ -12,7 +12,7 @@ use super::tile::{Worker, milliseconds_since};
 use crate::geometry::beam::{Candidates, Points};
 use crate::geometry::{AnyHit, NO_PRIMITIVE, Opaque, Packet, PrimitiveIndex, Rays, Search, Stack, Visitor};
 use crate::math::V3;
-use crate::settings::Visibility;
+use crossing::{Flight, transmittance};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use std::ops::Range;
@@ -44,7 +44,6 @@ pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &
             if lit_by_eye || !frame.plan.shadows {
                 queue.add_gains(simd, 0..queue.len(), &mut worker.color);
             } else {
-                worker.stats.rays.shadow += queue.len() as u64;
                 resolve_light(simd, frame, light, queue, worker);
             }
         }
@@ -68,20 +67,26 @@ impl ShadowQueue {
     }
 }
 
+/// The shadow rays of one light.
+struct LightRays<'a> {
+    light: usize,
+    queue: &'a ShadowQueue,
+    search: Search<'a>,
+}
+
 /// Resolves the shadow rays of one light.
 fn resolve_light<S: Simd>(simd: S, frame: &Frame<'_>, light: usize, queue: &mut ShadowQueue, worker: &mut Worker) {
-    let search = Search::new(&frame.scene.geometry, frame.plan.tree);
     queue.pad();
+    let rays = LightRays { light, queue, search: Search::new(&frame.scene.geometry, frame.plan.tree) };
+    if !frame.plan.shadow_beams {
+        return trace_rays(simd, frame, &rays, 0..queue.len(), None, worker);
+    }
     let mut lists = worker.lists.take().unwrap_or_default();
-    if frame.settings.visibility == Visibility::Certified {
-        for run in queue.runs.windows(2) {
-            let range = run[0] as usize..run[1] as usize;
-            if !range.is_empty() {
-                resolve_run(simd, frame, light, queue, range, &search, &mut lists, worker);
-            }
+    for run in queue.runs.windows(2) {
+        let range = run[0] as usize..run[1] as usize;
+        if !range.is_empty() {
+            resolve_run(simd, frame, &rays, range, &mut lists, worker);
         }
-    } else {
-        trace_rays(simd, frame, light, queue, 0..queue.len(), &search, None, worker);
     }
     worker.lists = Some(lists);
 }
@@ -90,32 +95,30 @@ fn resolve_light<S: Simd>(simd: S, frame: &Frame<'_>, light: usize, queue: &mut 
 fn resolve_run<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
-    light: usize,
-    queue: &ShadowQueue,
+    rays: &LightRays<'_>,
     range: Range<usize>,
-    search: &Search<'_>,
     lists: &mut Lists,
     worker: &mut Worker,
 ) {
+    let Lists { whole, part } = lists;
     let start = Instant::now();
-    let judge = Judge::new(simd, frame, *search, frame.lights[light].kind, queue, range.clone());
+    let judge = Judge::new(simd, frame, rays.search, frame.lights[rays.light].kind, rays.queue, range.clone());
     let verdict = match &judge {
-        Some(judge) => judge.judge(simd, &mut lists.whole, &mut worker.stack),
+        Some(judge) => judge.judge(simd, whole, &mut worker.stack),
         None => Verdict::Unknown,
     };
     worker.stats.stages_ms.certificate += milliseconds_since(start);
-    let Lists { whole, part } = lists;
     let Some(judge) = judge.filter(|_| verdict == Verdict::Listed) else {
-        return carry_out(simd, frame, light, queue, range, verdict, search, None, worker);
+        return carry_out(simd, frame, rays, range, verdict, None, worker);
     };
     if whole.len() < FEW {
         let suspects = Some(Suspects { candidates: whole, judge: &judge });
-        return carry_out(simd, frame, light, queue, range, verdict, search, suspects, worker);
+        return carry_out(simd, frame, rays, range, verdict, suspects, worker);
     }
     for own in parts(range) {
-        let verdict = judge.judge_part(simd, queue, own.clone(), whole, part);
+        let verdict = judge.judge_part(simd, rays.queue, own.clone(), whole, part);
         let suspects = Some(Suspects { candidates: part, judge: &judge });
-        carry_out(simd, frame, light, queue, own, verdict, search, suspects, worker);
+        carry_out(simd, frame, rays, own, verdict, suspects, worker);
     }
 }
 
@@ -130,19 +133,20 @@ struct Suspects<'a> {
 fn carry_out<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
-    light: usize,
-    queue: &ShadowQueue,
+    rays: &LightRays<'_>,
     range: Range<usize>,
     verdict: Verdict,
-    search: &Search<'_>,
     suspects: Option<Suspects<'_>>,
     worker: &mut Worker,
 ) {
     match verdict {
-        Verdict::Dark => {}
-        Verdict::Lit => queue.add_gains(simd, range, &mut worker.color),
-        Verdict::Listed => trace_rays(simd, frame, light, queue, range, search, suspects, worker),
-        Verdict::Unknown => trace_rays(simd, frame, light, queue, range, search, None, worker),
+        Verdict::Dark => worker.stats.certificates.dark += range.len() as u64,
+        Verdict::Lit => {
+            worker.stats.certificates.lit += range.len() as u64;
+            rays.queue.add_gains(simd, range, &mut worker.color);
+        }
+        Verdict::Listed => trace_rays(simd, frame, rays, range, suspects, worker),
+        Verdict::Unknown => trace_rays(simd, frame, rays, range, None, worker),
     }
 }
 
@@ -178,13 +182,12 @@ impl<S: Simd> Occluders<'_, S> {
 fn trace_rays<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
-    light: usize,
-    queue: &ShadowQueue,
+    rays: &LightRays<'_>,
     range: Range<usize>,
-    search: &Search<'_>,
     suspects: Option<Suspects<'_>>,
     worker: &mut Worker,
 ) {
+    let &LightRays { light, queue, search } = rays;
     let Worker { shadow_scratch, stack, color, stats, .. } = worker;
     let last_blocker = &mut shadow_scratch.last_blocker[light];
     simd.vectorize(
@@ -199,17 +202,19 @@ fn trace_rays<S: Simd>(
                 // Lanes beyond the range go nowhere.
                 let distance = <S::f32s as SimdBase<S>>::Mask::from_bitmask(simd, present)
                     .select(S::f32s::from_slice(simd, &queue.distance[lanes.clone()]), S::f32s::splat(simd, 0.0));
-                let mut occluders = Occluders { search: *search, listed: None };
+                let sources = S::u32s::from_slice(simd, &queue.source[lanes.clone()]);
+                let mut visitor = AnyHit::new(simd, distance, sources, opaque);
+                let mut occluders = Occluders { search, listed: None };
                 if let Some(Suspects { candidates, judge }) = suspects {
                     let points = judge.points::<S>(origin);
-                    if candidates.are_passed_by(simd, &points, distance) {
+                    if candidates.are_passed_by(simd, &points, &visitor) {
+                        stats.certificates.lit += u64::from(present.count_ones());
                         color.add(simd, &queue.sample[lanes], present, gain);
                         continue;
                     }
                     occluders.listed = Some((candidates, points));
                 }
-                let sources = S::u32s::from_slice(simd, &queue.source[lanes.clone()]);
-                let mut visitor = AnyHit::new(simd, distance, sources, opaque);
+                stats.rays.shadow += u64::from(present.count_ones());
                 if frame.settings.shadow_cache && suspects.is_none() && *last_blocker != NO_PRIMITIVE {
                     search.test_one(simd, *last_blocker, &Rays::new(origin, direction), &mut visitor);
                     count_cache(&mut stats.shadow_cache, present, visitor.blocked.to_bitmask());
@@ -224,18 +229,9 @@ fn trace_rays<S: Simd>(
                     && visitor.passed_transparent
                     && visitor.blocked.any_false()
                 {
-                    let open = visitor.blocked.select(S::f32s::splat(simd, 0.0), distance);
-                    gain = gain
-                        * crossing::transmittance(
-                            simd,
-                            frame,
-                            &occluders,
-                            [origin, direction],
-                            sources,
-                            listed,
-                            open,
-                            stack,
-                        );
+                    let limit = visitor.blocked.select(S::f32s::splat(simd, 0.0), distance);
+                    let flight = Flight { origin, direction, sources, limit };
+                    gain = gain * transmittance(simd, frame, &occluders, &flight, listed, stack);
                 }
                 let open = !visitor.blocked.to_bitmask() & present;
                 color.add(simd, &queue.sample[lanes], open, gain);

@@ -107,7 +107,7 @@ impl<'a> Judge<'a> {
         let Some(extent) = Extent::of(simd, &self.projection, &queue.origin, None, part) else {
             return Verdict::Unknown;
         };
-        own.filter(simd, self.search.geometry, candidates, &self.beam(&extent));
+        own.filter(simd, candidates, &self.beam(&extent));
         Verdict::of(own)
     }
 

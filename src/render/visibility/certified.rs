@@ -92,7 +92,7 @@ fn find_half<S: Simd>(
     let area = worker.order.halves[half];
     let own_beam = beam(frame, pass, area);
     let complete = if listed {
-        own.filter(simd, search.geometry, block, &own_beam);
+        own.filter(simd, block, &own_beam);
         true
     } else {
         search.collect(simd, &own_beam, nothing, own, &mut worker.stack)
@@ -112,7 +112,7 @@ fn find_half<S: Simd>(
         }
         let beam = beam(frame, pass, area);
         if complete {
-            cell.filter(simd, search.geometry, own, &beam);
+            cell.filter(simd, own, &beam);
         } else {
             *known = search.collect(simd, &beam, nothing, cell, &mut worker.stack);
         }
@@ -158,11 +158,6 @@ fn resolve_area<S: Simd>(
 ) {
     let Worker { rays, stats, .. } = worker;
     let pixels = area.pixels();
-    if candidates.is_certain() {
-        stats.pixels.certified += pixels as u64;
-    } else {
-        stats.pixels.resolved += pixels as u64;
-    }
     simd.vectorize(
         #[inline(always)]
         || {
@@ -177,4 +172,13 @@ fn resolve_area<S: Simd>(
             }
         },
     );
+    if candidates.is_certain() {
+        stats.pixels.certified += pixels as u64;
+    } else {
+        stats.pixels.resolved += pixels as u64;
+        let seen = &rays.primitive[area.start..area.start + pixels];
+        if seen.iter().all(|&primitive| primitive == seen[0]) {
+            stats.certificates.refused += pixels as u64;
+        }
+    }
 }

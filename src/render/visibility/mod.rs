@@ -26,12 +26,14 @@ pub(super) fn render_pass<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, work
     }
 }
 
-/// Fills in what is seen, not the colours.
+/// Fills in what is seen, not the colours, for planes alone: the pixels are counted by the passes that make the picture.
 pub(super) fn find_all<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
+    let (pixels, certificates) = (worker.stats.pixels, worker.stats.certificates);
     match frame.settings.visibility {
         Visibility::Certified => certified::find(simd, frame, pass, worker),
         Visibility::Full | Visibility::Subsample => full::find(simd, frame, pass, worker),
     }
+    (worker.stats.pixels, worker.stats.certificates) = (pixels, certificates);
     super::shade::store_seen(simd, frame, worker);
 }
 
@@ -68,7 +70,7 @@ fn queue_tile<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Wor
     let Worker { rays, order, .. } = worker;
     order.prepare(pass.width, pass.height);
     rays.clear();
-    let first = rays.extend_from(frame.camera.eye, media, order.samples.len());
+    let first = rays.extend_from_eye(frame.camera.eye, media, order.samples.len());
     rays.sample[..order.samples.len()].copy_from_slice(&order.samples);
     for (column, places, corner) in
         [(&mut rays.direction.x, &order.x, pass.x), (&mut rays.direction.y, &order.y, pass.y)]
@@ -89,7 +91,7 @@ fn append_pixels<S: Simd>(
     media: u32,
     rays: &mut super::queue::RayQueue,
 ) {
-    let first = rays.extend_from(frame.camera.eye, media, pixels.len());
+    let first = rays.extend_from_eye(frame.camera.eye, media, pixels.len());
     for (at, &[x, y]) in (first..).zip(pixels) {
         rays.sample[at] = super::samples::sample_at(x.into(), y.into());
         // The direction's columns hold the picture coordinates until `aim` turns them into directions.

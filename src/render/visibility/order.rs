@@ -59,7 +59,7 @@ impl Order {
             let [x, y] = pixel_at(sample);
             let corner = [usize::from(x), usize::from(y)];
             for (areas, edge) in [(&mut self.blocks, BLOCK), (&mut self.halves, HALF), (&mut self.cells, CELL)] {
-                if sample as usize % (edge * edge) == 0 {
+                if (sample as usize).is_multiple_of(edge * edge) {
                     areas.push(area(corner, edge, [width, height], self.samples.len()));
                 }
             }

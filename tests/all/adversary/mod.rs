@@ -43,13 +43,17 @@ struct Findings {
     failures: Vec<String>,
 }
 
-/// Tries scenes of a family: of fixed seeds, then of fresh ones until `end`.
-fn attack(family: &Family, first_seed: u64, end: Option<Instant>) -> Findings {
+/// Seeds of a family's scenes, given its number: the same ones on every run.
+fn seeds(family: usize) -> impl Iterator<Item = u64> {
+    (family as u64) << 32..
+}
+
+/// Tries scenes of a family.
+fn attack(family: &Family, seeds: impl Iterator<Item = u64>) -> Findings {
     let mut judge = Judge::new(1.0);
     let mut findings = Findings::default();
-    for seed in first_seed.. {
-        let over = end.map_or(seed == first_seed + family.scenes, |end| Instant::now() >= end);
-        if over || findings.failures.len() >= ENOUGH {
+    for seed in seeds {
+        if findings.failures.len() >= ENOUGH {
             break;
         }
         let mut random = Random::new(seed);
@@ -97,33 +101,28 @@ fn no_scene_shows_another_picture_than_brute_force() {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let fuzz = asked_for();
     let fresh = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos() as u64);
-    let all: Vec<Findings> = std::thread::scope(|scope| {
-        let worker = |first: usize| {
-            let families = FAMILIES.iter().enumerate().skip(first).step_by(threads);
-            let share = fuzz.map(|time| time / FAMILIES.len().div_ceil(threads) as u32);
-            families
-                .map(|(number, family)| {
-                    let end = share.map(|share| Instant::now() + share);
-                    let seed = if end.is_some() { fresh } else { 0 };
-                    let start = Instant::now();
-                    let found = attack(family, seed.wrapping_add((number as u64) << 32), end);
-                    let seconds = start.elapsed().as_secs_f64();
-                    println!(
-                        "{}: {} scenes, {} refused, {seconds:.1} s, seed {seed}",
-                        family.name, found.tried, found.refused
-                    );
-                    found
-                })
-                .collect::<Vec<_>>()
-        };
+    let worker = |first: usize| {
+        let mut all = Vec::new();
+        for (number, family) in FAMILIES.iter().enumerate().skip(first).step_by(threads) {
+            let found = match fuzz {
+                None => attack(family, seeds(number).take(family.scenes as usize)),
+                Some(time) => {
+                    let end = Instant::now() + time / FAMILIES.len().div_ceil(threads) as u32;
+                    println!("{}: from seed {fresh}", family.name);
+                    attack(family, (fresh..).take_while(|_| Instant::now() < end))
+                }
+            };
+            println!("{}: {} scenes, {} refused", family.name, found.tried, found.refused);
+            assert!(found.refused <= found.tried, "{}: most scenes do not load", family.name);
+            all.extend(found.failures);
+        }
+        all
+    };
+    let failures: Vec<String> = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|first| scope.spawn(move || worker(first))).collect();
         workers.into_iter().flat_map(|worker| worker.join().unwrap()).collect()
     });
-    let failures: Vec<&str> = all.iter().flat_map(|found| &found.failures).map(String::as_str).collect();
     assert!(failures.is_empty(), "{}", failures.join("\n"));
-    for (family, found) in FAMILIES.iter().zip(&all) {
-        assert!(found.refused < found.tried, "{}: most scenes do not load", family.name);
-    }
 }
 
 #[test]
@@ -139,43 +138,63 @@ fn scenes_that_failed_once_do_not_again() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// Types of objects that are left alone on a stage, one row a kind of margin. None: all of them, and what is wrong is
-/// wrong about shadows, or about mirrors.
-const KINDS: [(&str, &[&str]); 9] = [
-    ("spheres", &["sphere"]),
-    ("triangles", &["triangle", "rectangle", "mesh"]),
-    ("boxes", &["box"]),
-    ("disks", &["disk"]),
-    ("cones", &["cone", "cylinder"]),
-    ("planes", &["plane"]),
-    ("rivals", &["plane", "disk", "triangle", "rectangle", "sphere"]),
-    ("shadows", &[]),
-    ("reflections", &[]),
+/// A kind of margin, and which scenes depend on it.
+struct Margin {
+    family: &'static str,
+    /// The types of objects that stay in a scene; all where there are none.
+    types: &'static [&'static str],
+    of: Sight,
+}
+
+/// Which rays' margins.
+enum Sight {
+    Any,
+    /// Only what shadows change counts.
+    Shadows,
+    /// Only what reflections change counts, without shadows.
+    Reflections,
+}
+
+const MARGINS: [Margin; 9] = [
+    Margin { family: "spheres", types: &["sphere"], of: Sight::Any },
+    Margin { family: "triangles", types: &["triangle", "rectangle", "mesh"], of: Sight::Any },
+    Margin { family: "boxes", types: &["box"], of: Sight::Any },
+    Margin { family: "disks", types: &["disk"], of: Sight::Any },
+    Margin { family: "cones", types: &["cone", "cylinder"], of: Sight::Any },
+    Margin { family: "planes", types: &["plane"], of: Sight::Any },
+    Margin { family: "rivals", types: &[], of: Sight::Any },
+    Margin { family: "shadows", types: &[], of: Sight::Shadows },
+    Margin { family: "reflections", types: &[], of: Sight::Reflections },
 ];
+
+impl Margin {
+    /// Whether a scene shows its lack.
+    fn is_missed(&self, judge: &mut Judge, mut scene: Value) -> bool {
+        if let (Some(objects), false) = (scene["objects"].as_array_mut(), self.types.is_empty()) {
+            objects.retain(|object| self.types.iter().any(|kind| object["type"] == *kind));
+        }
+        let mut is_wrong = |shadows: bool, reflections: bool| {
+            let settings = Settings { threads: 1, shadows, reflections, ..Settings::exact() };
+            judge.complaint(&scene, &(String::new(), settings)).is_some()
+        };
+        match self.of {
+            Sight::Any => is_wrong(true, true),
+            Sight::Shadows => is_wrong(true, true) && !is_wrong(false, true),
+            Sight::Reflections => is_wrong(false, true) && !is_wrong(false, false),
+        }
+    }
+}
 
 #[test]
 fn margins_that_are_missing_are_noticed() {
-    let exact = (String::new(), Settings { threads: 1, ..Settings::exact() });
-    let no_shadows = (String::new(), Settings { shadows: false, ..exact.1.clone() });
-    let neither = (String::new(), Settings { reflections: false, ..no_shadows.1.clone() });
-    for (name, kinds) in KINDS {
-        let (number, family) = FAMILIES.iter().enumerate().find(|(_, family)| family.name == name).unwrap();
-        let mut judge = Judge::new(0.0);
-        let mut noticed = |seed: u64| {
-            let mut file = families::compose(family, &mut Random::new(seed));
-            if let (Some(objects), false) = (file["objects"].as_array_mut(), kinds.is_empty()) {
-                objects.retain(|object| kinds.iter().any(|kind| object["type"] == *kind));
-            }
-            // Right but for what the second has and the first has not.
-            let [without, with] = match name {
-                "shadows" => [&no_shadows, &exact],
-                "reflections" => [&neither, &no_shadows],
-                _ => return judge.complaint(&file, &exact).is_some(),
-            };
-            judge.complaint(&file, without).is_none() && judge.complaint(&file, with).is_some()
-        };
-        let first = (number as u64) << 32;
-        assert!((first..first + family.scenes).any(&mut noticed), "{name}: nothing is wrong without margins");
+    let mut judge = Judge::new(0.0);
+    for margin in MARGINS {
+        let (number, family) = FAMILIES.iter().enumerate().find(|(_, family)| family.name == margin.family).unwrap();
+        let noticed = seeds(number).take(family.scenes as usize).any(|seed| {
+            let scene = families::compose(family, &mut Random::new(seed));
+            margin.is_missed(&mut judge, scene)
+        });
+        assert!(noticed, "{}: nothing is wrong without margins", margin.family);
     }
 }
 
