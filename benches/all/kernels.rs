@@ -7,7 +7,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 use glam::Vec3;
 use raywalk::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle};
-use raywalk::geometry::{BLOCK, Block, Geometry};
+use raywalk::geometry::{self, BLOCK, Block, Geometry};
 use raywalk::math::{SimdToken, V3, dispatch};
 
 /// Nearest hit of all rays with all blocks, a packet at a time.
@@ -20,9 +20,10 @@ fn packets<S: Simd, K: Kernel<N>, const N: usize>(simd: S, blocks: &[Block<N>], 
             for at in (0..COUNT).step_by(S::f32s::LEN) {
                 let [origin, direction] =
                     [&rays.origin, &rays.direction].map(|[x, y, z]| V3::load(simd, &x[at..], &y[at..], &z[at..]));
+                let packet = geometry::Rays::new(origin, direction);
                 for block in blocks {
                     for place in 0..block.len as usize {
-                        let (hit, t) = K::intersect(&block.splat(simd, place), origin, direction, zero);
+                        let (hit, t) = K::intersect(&block.splat(simd, place), &packet, zero);
                         nearest = hit.select(t.min(nearest), nearest);
                     }
                 }
@@ -42,8 +43,9 @@ fn rays_one_by_one<S: Simd, K: Kernel<N>, const N: usize>(simd: S, blocks: &[Blo
             for at in 0..COUNT {
                 let [origin, direction] =
                     [&rays.origin, &rays.direction].map(|[x, y, z]| V3::splat(simd, Vec3::new(x[at], y[at], z[at])));
+                let ray = geometry::Rays::new(origin, direction);
                 for block in blocks {
-                    let (hit, t) = K::intersect(&block.load(simd), origin, direction, zero);
+                    let (hit, t) = K::intersect(&block.load(simd), &ray, zero);
                     nearest = hit.select(t.min(nearest), nearest);
                 }
             }

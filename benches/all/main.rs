@@ -1,7 +1,6 @@
 //! All benchmarks, in one binary: one module a subject. `cargo bench -- kernels` runs one of them.
-//!
-//! Beams will be a module beside `kernels` and `traversal`: from an apex through a tile to its candidate list.
 
+mod beams;
 mod builds;
 mod frames;
 mod kernels;

@@ -6,7 +6,7 @@ use divan::{Bencher, counter::ItemsCount};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::Vec3;
-use raywalk::geometry::{AnyHit, ClosestHit, Geometry, Opaque, Packet, Search, Stack};
+use raywalk::geometry::{AnyHit, ClosestHit, Geometry, NO_PRIMITIVE, Opaque, Packet, Search, Stack};
 use raywalk::math::{SimdToken, V3, dispatch};
 
 /// How many rays found something.
@@ -22,7 +22,8 @@ fn trace<S: Simd>(simd: S, geometry: &Geometry, rays: &Rays, shadow: bool, stack
                     [&rays.origin, &rays.direction].map(|[x, y, z]| V3::load(simd, &x[at..], &y[at..], &z[at..]));
                 let packet = Packet::new(geometry, origin, direction);
                 found += if shadow {
-                    let mut visitor = AnyHit::new(simd, far, Opaque::All);
+                    let sources = S::u32s::splat(simd, NO_PRIMITIVE);
+                    let mut visitor = AnyHit::new(simd, far, sources, Opaque::All);
                     search.traverse(simd, &packet, stack, &mut visitor);
                     visitor.blocked.to_bitmask().count_ones()
                 } else {

@@ -32,6 +32,16 @@ impl<F> Rays<F> {
         Self { origin, direction, inverse, across: across(direction) }
     }
 
+    /// Rays for kernels that [need only](super::primitive::Kernel::NEEDS_FRAME) origin and direction.
+    #[inline(always)]
+    pub fn bare<S: Simd>(origin: V3<F>, direction: V3<F>) -> Self
+    where
+        F: Lanes<S>,
+    {
+        let none = V3::all(F::splat(origin.x.token(), 0.0));
+        Self { origin, direction, inverse: none, across: [none; 2] }
+    }
+
     /// One ray of `rays` in every lane: the same values as if it had been made on its own.
     #[inline(always)]
     pub fn splat<S: Simd, G: Lanes<S>>(simd: S, rays: &Rays<G>, lane: usize) -> Self

@@ -15,6 +15,12 @@ pub trait Visitor<S: Simd> {
         true
     }
 
+    /// Lanes for which hits on `primitive` do not count.
+    #[inline(always)]
+    fn excludes(&self, simd: S, _primitive: PrimitiveIndex) -> Mask<S> {
+        Mask::<S>::splat(simd, false)
+    }
+
     /// Distance beyond which (exclusive) a hit on `primitive` counts.
     fn t_min(&self, primitive: PrimitiveIndex) -> S::f32s;
 
@@ -157,6 +163,11 @@ impl<S: Simd> Visitor<S> for AnyHit<'_, S> {
     }
 
     #[inline(always)]
+    fn excludes(&self, _simd: S, primitive: PrimitiveIndex) -> Mask<S> {
+        self.sources.simd_eq(primitive) | self.limit.simd_lt(0.0)
+    }
+
+    #[inline(always)]
     fn t_min(&self, _primitive: PrimitiveIndex) -> S::f32s {
         S::f32s::splat(self.limit.token(), 0.0)
     }
@@ -231,6 +242,11 @@ impl<S: Simd> Visitor<S> for NextCrossing<'_, S> {
     #[inline(always)]
     fn accepts(&mut self, primitive: PrimitiveIndex) -> bool {
         !self.opaque[primitive as usize]
+    }
+
+    #[inline(always)]
+    fn excludes(&self, _simd: S, primitive: PrimitiveIndex) -> Mask<S> {
+        self.sources.simd_eq(primitive)
     }
 
     #[inline(always)]

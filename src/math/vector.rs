@@ -112,6 +112,17 @@ impl<F> V3<F> {
         let inverse = F::splat(self.x.token(), 1.0) / self.dot(self).sqrt();
         self.scale(inverse)
     }
+
+    /// [`normalize`](Self::normalize), but `other` where the squared length is 0 or too small to be accurate.
+    #[inline(always)]
+    pub fn normalize_or<S: Simd>(self, other: Self) -> Self
+    where
+        F: Lanes<S>,
+    {
+        let squared = self.dot(self);
+        let usable = squared.simd_ge(F::splat(squared.token(), f32::MIN_POSITIVE));
+        Self::select(usable, self.normalize(), other)
+    }
 }
 
 impl<F: Add<Output = F>> Add for V3<F> {

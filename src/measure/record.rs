@@ -4,6 +4,7 @@ use super::counts::SceneCounts;
 use super::run::{CpuTime, Run};
 use super::statistics::Spread;
 use super::system::peak_rss_bytes;
+use crate::render::FrameStats;
 use crate::scene::Scene;
 use crate::settings::{ROWS, Settings};
 use serde::Serialize;
@@ -49,10 +50,37 @@ pub struct Record {
     supersampled: Value,
     stages_ms: Value,
     shadow_cache: Value,
+    certificates: Certificates,
     /// `null` where the system does not tell.
     peak_rss_bytes: Option<u64>,
     #[serde(flatten)]
     counts: SceneCounts,
+}
+
+/// What beams proved.
+#[derive(Debug, Serialize)]
+struct Certificates {
+    /// Share of all pixels whose block was proven to see one thing.
+    certified_share: f64,
+    /// Of the pixels that lie in blocks that see one thing, the share in blocks for which that was not proven.
+    false_reject_rate: f64,
+    /// Shadow rays a frame that were known to arrive, or not to, without being traced.
+    shadow_rays_lit: Value,
+    shadow_rays_dark: Value,
+}
+
+impl Certificates {
+    fn of(run: &Run) -> Self {
+        let FrameStats { pixels, certificates, .. } = run.total();
+        let all = pixels.traced + pixels.resolved + pixels.certified + pixels.interpolated;
+        let share = |part: u64, whole: u64| part as f64 / whole.max(1) as f64;
+        Self {
+            certified_share: share(pixels.certified, all),
+            false_reject_rate: share(certificates.refused, certificates.refused + pixels.certified),
+            shadow_rays_lit: run.per_frame(&certificates.lit),
+            shadow_rays_dark: run.per_frame(&certificates.dark),
+        }
+    }
 }
 
 impl Record {
@@ -77,6 +105,7 @@ impl Record {
             supersampled: run.per_frame(&total.supersampled),
             stages_ms: run.per_frame(&total.stages_ms),
             shadow_cache: run.per_frame(&total.shadow_cache),
+            certificates: Certificates::of(run),
             peak_rss_bytes: peak_rss_bytes(),
             counts: SceneCounts::of(scene),
         }

@@ -337,7 +337,7 @@ pub(super) fn transmission<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     primitives: &S::u32s,
-    rays: &Rays<S::f32s>,
+    [origin, direction]: [V3<S::f32s>; 2],
     t: S::f32s,
 ) -> V3<S::f32s> {
     let hits = Hits::new(simd, primitives.as_slice());
@@ -348,7 +348,7 @@ pub(super) fn transmission<S: Simd>(
     let materials = MixedMaterials::new(simd, frame, &hits);
     let mut color = materials.triple(simd, Row::Color);
     if frame.plan.textures && materials.any(|m| m.color_texture.is_some()) {
-        let surfaces = surfaces(simd, frame, &hits, rays.origin, rays.direction, t);
+        let surfaces = surfaces(simd, frame, &hits, origin, direction, t);
         materials.look_up(simd, frame, &hits, &surfaces, &mut color, &mut V3::zero(simd));
     }
     let crossed = Mask::<S>::from_bitmask(simd, hits.active);

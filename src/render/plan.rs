@@ -3,7 +3,7 @@
 use super::tables::{FlatMaterial, Tables};
 use crate::geometry::PrimitiveKind;
 use crate::scene::Scene;
-use crate::settings::{Settings, SphereCache};
+use crate::settings::{Settings, SphereCache, Visibility};
 use glam::Vec3;
 
 /// What a frame runs. Made once a frame; nothing below asks settings or scene again.
@@ -13,8 +13,12 @@ pub struct Plan {
     pub tree: bool,
     /// Compute sphere terms once for all primary rays.
     pub sphere_cache: SphereCache,
+    /// Prove for blocks of pixels what they can see.
+    pub beams: bool,
     /// Trace shadow rays.
     pub shadows: bool,
+    /// Judge shadow rays by beams from their light before any is traced.
+    pub shadow_beams: bool,
     /// Shadow rays may pass through something.
     pub coloured_shadows: bool,
     /// Trace mirror rays.
@@ -39,6 +43,9 @@ pub struct Plan {
     pub depth: u32,
 }
 
+/// As many primitives are tested sooner than a beam is made.
+const FEW_PRIMITIVES: usize = 4;
+
 impl Plan {
     /// The plan for a scene under given settings.
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
@@ -52,11 +59,15 @@ impl Plan {
         let depth = settings.depth.unwrap_or(scene.render.max_depth);
         let refractions = settings.refractions && depth > 1 && !tables.opaque.is_empty();
         let reflections = settings.reflections && depth > 1 && tables.materials.iter().any(|m| m.secondary);
+        let beams = settings.visibility == Visibility::Certified;
+        // A light at the eye casts no shadow that the eye sees itself, but mirrors and glass show them.
+        let shadows = settings.shadows && (!scene.headlight || reflections || refractions);
         Self {
             tree: settings.bvh && scene.geometry.bvh.is_some(),
+            beams,
             sphere_cache: if has(PrimitiveKind::Sphere) { settings.sphere_cache } else { SphereCache::Off },
-            // A light at the eye casts no shadow that the eye sees itself, but mirrors and glass show them.
-            shadows: settings.shadows && (!scene.headlight || reflections || refractions),
+            shadows,
+            shadow_beams: beams && shadows && scene.geometry.len() > FEW_PRIMITIVES,
             coloured_shadows: !tables.opaque.is_empty(),
             reflections,
             refractions,
@@ -97,6 +108,12 @@ impl Plan {
                 "sphere terms: off, there are no spheres (or they were switched off)",
             ),
             say(
+                self.beams,
+                "beams: on, a block of pixels is asked once what it can see, its rays are tested against that alone"
+                    .to_owned(),
+                "beams: off, they were switched off: every ray goes its own way",
+            ),
+            say(
                 self.shadows,
                 format!("shadows: on, {} light(s) cast them", scene.lights.len().max(1)),
                 if scene.headlight {
@@ -104,6 +121,11 @@ impl Plan {
                 } else {
                     "shadows: off, they were switched off"
                 },
+            ),
+            say(
+                self.shadow_beams,
+                "shadow beams: on, a light is asked for many rays at once whether they arrive".to_owned(),
+                "shadow beams: off, there are no shadows, too few primitives, or beams were switched off",
             ),
             say(
                 self.coloured_shadows,

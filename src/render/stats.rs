@@ -56,6 +56,17 @@ pub struct CacheCounts {
     pub hits: u64,
 }
 
+/// What beams told without a ray, and where they told too little.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct CertificateCounts {
+    /// Pixels that were tested against candidates although all of their cell saw one thing: refused in vain.
+    pub refused: u64,
+    /// Shadow rays that were known to arrive.
+    pub lit: u64,
+    /// Shadow rays that were known not to.
+    pub dark: u64,
+}
+
 /// What [`render_frame`](super::render_frame) reports.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FrameStats {
@@ -73,6 +84,8 @@ pub struct FrameStats {
     pub stages_ms: StageTimes,
     /// The shadow-object cache.
     pub shadow_cache: CacheCounts,
+    /// Beams.
+    pub certificates: CertificateCounts,
 }
 
 impl FrameStats {
@@ -96,6 +109,9 @@ impl FrameStats {
         stages.secondary += other.stages_ms.secondary;
         stages.resolve += other.stages_ms.resolve;
         stages.present += other.stages_ms.present;
+        self.certificates.refused += other.certificates.refused;
+        self.certificates.lit += other.certificates.lit;
+        self.certificates.dark += other.certificates.dark;
         cache.queries += other.shadow_cache.queries;
         cache.hits += other.shadow_cache.hits;
     }

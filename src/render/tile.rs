@@ -136,12 +136,14 @@ impl Worker {
         std::mem::swap(&mut self.seen, &mut self.seen_at_centres);
         self.seen.resize(SAMPLES, Seen::NOTHING);
         self.sums.clear();
-        let pixels_before = self.stats.pixels;
+        let (pixels, certificates) = (self.stats.pixels, self.stats.certificates);
         let step = 1.0 / side as f32;
         for row in 0..side {
             for column in 0..side {
                 let offset = [(column as f32 + 0.5) * step, (row as f32 + 0.5) * step];
-                self.stats.pixels = pixels_before;
+                // Each pixel counts once, by its last pass.
+                self.stats.pixels = pixels;
+                self.stats.certificates = certificates;
                 visibility::render_pass(simd, frame, &Pass { offset, ..*centre }, self);
                 self.sums.add_all(&self.color);
             }

@@ -12,7 +12,7 @@ use std::path::Path;
 const SIZE: (u32, u32) = (97, 66);
 
 /// The values of a row that promise the default's pixels, but for the default itself.
-fn same_pixels(row: &Row) -> Vec<&'static str> {
+pub fn same_pixels(row: &Row) -> Vec<&'static str> {
     match &row.kind {
         Kind::Choice(choices) => {
             let default = (row.get)(&Settings::exact());
@@ -25,7 +25,7 @@ fn same_pixels(row: &Row) -> Vec<&'static str> {
 }
 
 /// The default with one row flipped, each in turn. What the machine lacks is left out.
-fn flipped() -> Vec<(String, Settings)> {
+pub fn flipped() -> Vec<(String, Settings)> {
     let mut all = Vec::new();
     for row in ROWS {
         for value in same_pixels(row) {

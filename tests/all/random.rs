@@ -27,6 +27,26 @@ impl Random {
         (self.next() % count as u64) as usize
     }
 
+    /// Log-uniform between two powers of ten.
+    pub fn magnitude(&mut self, min: f64, max: f64) -> f64 {
+        10_f64.powf(self.within(min, max))
+    }
+
+    /// True with a probability.
+    pub fn chance(&mut self, probability: f64) -> bool {
+        self.within(0.0, 1.0) < probability
+    }
+
+    /// 1 or -1.
+    pub fn sign(&mut self) -> f64 {
+        if self.chance(0.5) { 1.0 } else { -1.0 }
+    }
+
+    /// One of some values.
+    pub fn pick<T: Copy>(&mut self, values: &[T]) -> T {
+        values[self.below(values.len())]
+    }
+
     /// A point in the box from -`half` to `half`.
     pub fn point(&mut self, half: f64) -> DVec3 {
         DVec3::new(self.within(-half, half), self.within(-half, half), self.within(-half, half))

@@ -45,12 +45,12 @@ pub fn cameras(scene: &Scene, count: usize, random: &mut Random) -> Vec<Camera> 
     scene.cameras.iter().take(3).map(|c| c.camera).chain(others).collect()
 }
 
-fn triple(v: DVec3) -> Value {
+pub fn triple(v: DVec3) -> Value {
     json!(v.to_array())
 }
 
 /// One material of each sort.
-fn materials() -> Value {
+pub fn materials() -> Value {
     json!({
         "matte": { "color": [0.8, 0.4, 0.2], "specular": 0 },
         "shiny": { "color": [0.2, 0.5, 0.9], "reflectivity": [0.3, 0.2, 0.1], "shininess": 33 },
@@ -64,9 +64,9 @@ fn materials() -> Value {
     })
 }
 
-const MATERIALS: [&str; 9] = ["matte", "shiny", "mirror", "glass", "amber", "pane", "steel", "clay", "tiles"];
+pub const MATERIALS: [&str; 9] = ["matte", "shiny", "mirror", "glass", "amber", "pane", "steel", "clay", "tiles"];
 
-fn textures() -> Value {
+pub fn textures() -> Value {
     json!({ "tiles": { "checker": [[0.9, 0.9, 0.9], [0.1, 0.2, 0.1]], "size": 0.4 } })
 }
 
@@ -87,7 +87,7 @@ fn lights() -> Value {
 }
 
 /// A shape of any type but a plane, about 1 large, around `center`.
-fn any_shape(random: &mut Random, center: DVec3) -> Value {
+pub fn any_shape(random: &mut Random, center: DVec3) -> Value {
     let (a, b, c) = (random.direction(), random.direction(), random.direction());
     let (size, part) = (random.within(0.2, 0.8), random.within(0.1, 0.9));
     let capped = random.below(2) == 0;
@@ -111,7 +111,7 @@ fn any_shape(random: &mut Random, center: DVec3) -> Value {
     }
 }
 
-fn with_material(mut object: Value, material: &str) -> Value {
+pub fn with_material(mut object: Value, material: &str) -> Value {
     object["material"] = json!(material);
     object
 }

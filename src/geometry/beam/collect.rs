@@ -1,6 +1,6 @@
 //! The walk through the tree that lists what a beam can meet.
 
-use super::list::Candidates;
+use super::list::{Candidates, Member};
 use super::outline::Outline;
 use super::projection::{Beam, Cover};
 use crate::geometry::bvh::{Bvh, Child, Leaf, WIDTH};
@@ -130,16 +130,15 @@ macro_rules! define_list_block {
                             let block = &self.geometry.$blocks[leaf.block as usize];
                             let fields = block.load(simd);
                             let outlines = $kernel::outline(&fields, beam);
-                            let first = leaf.block * BLOCK as u32;
-                            let mut places = [first; BLOCK];
-                            for (place, number) in places.iter_mut().zip(0..) {
-                                *place += number;
+                            let mut members = [Member::default(); BLOCK];
+                            for (place, (member, &index)) in members.iter_mut().zip(&block.indices).enumerate() {
+                                *member = Member { index, block: leaf.block, place: place as u8 };
                             }
                             let ignored = u32x8::from_slice(simd, &block.indices).simd_eq(beam.ignored).to_bitmask();
                             let used = ((1 << block.len) - 1) & !ignored;
                             let Candidates { $blocks, cover, blocked, .. } = candidates;
                             *blocked |= $blocks.sift::<$kernel, S, f32x8<S>, $fields>(
-                                &outlines, &places, used, &self.geometry.$blocks, beam, cover,
+                                &outlines, &members, used, beam, cover,
                             );
                         })+
                     },

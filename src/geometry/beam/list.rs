@@ -3,7 +3,7 @@
 use super::outline::{Outline, is_behind};
 use super::projection::{Beam, Cover};
 use crate::geometry::primitive::{Cone, Disk, Plane, Sphere, Triangle, for_each_primitive};
-use crate::geometry::{BLOCK, Block, Geometry};
+use crate::geometry::{BLOCK, PrimitiveIndex};
 use crate::math::Lanes;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -14,17 +14,25 @@ pub(super) const MOST: usize = 240;
 /// Room beyond, for whole vectors to be stored at the end.
 const ROOM: usize = MOST + 32;
 
+/// A candidate: which primitive it is, and where it lies.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Member {
+    pub index: PrimitiveIndex,
+    pub block: u32,
+    pub place: u8,
+}
+
 /// Primitives of one type: their outlines, number by number, and where they lie.
 #[derive(Clone, Debug)]
 pub struct List<const M: usize> {
     outlines: Box<[[f32; ROOM]; M]>,
-    places: Box<[u32; ROOM]>,
+    members: Box<[Member; ROOM]>,
     len: usize,
 }
 
 impl<const M: usize> Default for List<M> {
     fn default() -> Self {
-        Self { outlines: Box::new([[0.0; ROOM]; M]), places: Box::new([0; ROOM]), len: 0 }
+        Self { outlines: Box::new([[0.0; ROOM]; M]), members: Box::new([Member::default(); ROOM]), len: 0 }
     }
 }
 
@@ -39,9 +47,20 @@ impl<const M: usize> List<M> {
         self.len == 0
     }
 
-    /// Where they lie.
-    fn places(&self) -> &[u32] {
-        &self.places[..self.len]
+    /// One of them.
+    #[inline(always)]
+    pub(super) fn member(&self, at: usize) -> Member {
+        self.members[at]
+    }
+
+    /// The outline of one, in every lane.
+    #[inline(always)]
+    pub(super) fn outline<S: Simd, F: Lanes<S>>(&self, simd: S, at: usize) -> [F; M] {
+        let mut outline = [F::splat(simd, 0.0); M];
+        for (lanes, column) in outline.iter_mut().zip(self.outlines.iter()) {
+            *lanes = F::splat(simd, column[at]);
+        }
+        outline
     }
 
     /// Empties the list.
@@ -54,48 +73,18 @@ impl<const M: usize> List<M> {
         self.len + BLOCK <= MOST
     }
 
-    /// Appends the masked lanes; `place_of` tells where the primitive of each lane lies.
+    /// Appends the masked lanes.
     #[inline(always)]
-    fn append<S: Simd, F: Lanes<S>>(&mut self, mask: F::Mask, outlines: &[F; M], places: &[u32]) {
+    fn append<S: Simd, F: Lanes<S>>(&mut self, mask: F::Mask, outlines: &[F; M], members: &[Member]) {
         let at = self.len;
         for (column, values) in self.outlines.iter_mut().zip(outlines) {
             values.compress(mask).store_slice(&mut column[at..at + F::LEN]);
         }
         let mut lanes = mask.to_bitmask();
         while lanes != 0 {
-            self.places[self.len] = places[lanes.trailing_zeros() as usize];
+            self.members[self.len] = members[lanes.trailing_zeros() as usize];
             self.len += 1;
             lanes &= lanes - 1;
-        }
-    }
-
-    /// Appends where those candidates lie that the beam can meet, moving the cover up as it goes.
-    #[inline(always)]
-    fn select<K: Outline<N, M>, S: Simd, const N: usize>(
-        &self,
-        simd: S,
-        beam: &Beam<'_>,
-        cover: &mut Cover,
-        places: &mut Vec<u32>,
-    ) {
-        for at in (0..self.len).step_by(S::f32s::LEN) {
-            let outlines: [S::f32s; M] = self.load(simd, at);
-            let missed = K::misses(&outlines, beam) | is_behind(K::nearest(&outlines), beam, cover);
-            let present = (1 << (self.len - at).min(S::f32s::LEN)) - 1;
-            let kept = !missed.to_bitmask() & present;
-            // Where rays only ask whether anything is in their way, nothing hides anything.
-            let mut covering = if beam.blocking.is_none() { K::covers(&outlines, beam).to_bitmask() & kept } else { 0 };
-            while covering != 0 {
-                let (nearest, farthest) =
-                    bounds_of::<K, S, S::f32s, N, M>(&outlines, covering.trailing_zeros() as usize, beam);
-                cover.move_up(nearest, farthest, beam);
-                covering &= covering - 1;
-            }
-            let mut lanes = kept;
-            while lanes != 0 {
-                places.push(self.places[at + lanes.trailing_zeros() as usize]);
-                lanes &= lanes - 1;
-            }
         }
     }
 
@@ -115,9 +104,8 @@ impl<const M: usize> List<M> {
     pub(super) fn sift<K: Outline<N, M>, S: Simd, F: Lanes<S>, const N: usize>(
         &mut self,
         outlines: &[F; M],
-        places: &[u32],
+        members: &[Member],
         used: u64,
-        blocks: &[Block<N>],
         beam: &Beam<'_>,
         cover: &mut Cover,
     ) -> bool {
@@ -133,15 +121,12 @@ impl<const M: usize> List<M> {
             let (nearest, farthest) = bounds_of::<K, S, F, N, M>(outlines, lane, beam);
             if beam.blocking.is_none() {
                 cover.move_up(nearest, farthest, beam);
-            } else {
-                let (block, place) = place_of(places[lane]);
-                if beam.is_blocked_by(blocks[block].indices[place], nearest, farthest) {
-                    return true;
-                }
+            } else if beam.is_blocked_by(members[lane].index, nearest, farthest) {
+                return true;
             }
         }
         let simd = outlines[0].token();
-        self.append::<S, F>(F::Mask::from_bitmask(simd, kept), outlines, places);
+        self.append::<S, F>(F::Mask::from_bitmask(simd, kept), outlines, members);
         false
     }
 
@@ -151,7 +136,6 @@ impl<const M: usize> List<M> {
         &mut self,
         simd: S,
         larger: &Self,
-        blocks: &[Block<N>],
         beam: &Beam<'_>,
         cover: &mut Cover,
     ) -> bool {
@@ -159,19 +143,13 @@ impl<const M: usize> List<M> {
         for at in (0..larger.len).step_by(S::f32s::LEN) {
             let outlines: [S::f32s; M] = larger.load(simd, at);
             let count = (larger.len - at).min(S::f32s::LEN);
-            let places = &larger.places[at..at + count];
-            if self.sift::<K, S, S::f32s, N>(&outlines, places, (1 << count) - 1, blocks, beam, cover) {
+            let members = &larger.members[at..at + count];
+            if self.sift::<K, S, S::f32s, N>(&outlines, members, (1 << count) - 1, beam, cover) {
                 return true;
             }
         }
         false
     }
-}
-
-/// Block and place within it.
-#[inline(always)]
-fn place_of(place: u32) -> (usize, usize) {
-    (place as usize / BLOCK, place as usize % BLOCK)
 }
 
 /// Upper and lower bound of the nearness of one lane's primitive.
@@ -221,7 +199,7 @@ macro_rules! define_candidates {
             }
 
             /// Replaces the candidates by those of `larger` that a beam within that one's can meet.
-            pub fn filter<S: Simd>(&mut self, simd: S, geometry: &Geometry, larger: &Self, beam: &Beam<'_>) {
+            pub fn filter<S: Simd>(&mut self, simd: S, larger: &Self, beam: &Beam<'_>) {
                 self.cover = larger.cover;
                 self.blocked = false;
                 simd.vectorize(
@@ -230,52 +208,12 @@ macro_rules! define_candidates {
                         $(if larger.$blocks.is_empty() {
                             self.$blocks.clear();
                         } else {
-                            let blocks = &geometry.$blocks;
                             self.blocked |= self.$blocks.refill::<$kernel, S, $fields>(
-                                simd, &larger.$blocks, blocks, beam, &mut self.cover,
+                                simd, &larger.$blocks, beam, &mut self.cover,
                             );
                         })+
                     },
                 );
-            }
-        }
-
-        /// Where candidates lie: block and place within it, type by type.
-        #[derive(Clone, Debug, Default)]
-        pub struct Places {
-            $($blocks: Vec<u32>,)+
-        }
-
-        impl Places {
-            $(
-                #[doc = concat!("Places of type ", stringify!($kernel), ".")]
-                #[inline(always)]
-                pub fn $blocks(&self) -> impl Iterator<Item = (usize, usize)> {
-                    self.$blocks.iter().map(#[inline(always)] |&place| place_of(place))
-                }
-            )+
-
-            /// Whether there are none.
-            pub fn is_empty(&self) -> bool {
-                true $(&& self.$blocks.is_empty())+
-            }
-
-            /// Replaces the places by those of all candidates.
-            pub fn take_all(&mut self, candidates: &Candidates) {
-                $(
-                    self.$blocks.clear();
-                    self.$blocks.extend_from_slice(candidates.$blocks.places());
-                )+
-            }
-
-            /// Replaces the places by those of the candidates that a beam within theirs can meet.
-            #[inline(always)]
-            pub fn select<S: Simd>(&mut self, simd: S, candidates: &Candidates, beam: &Beam<'_>) {
-                let mut cover = candidates.cover;
-                $(
-                    self.$blocks.clear();
-                    candidates.$blocks.select::<$kernel, S, $fields>(simd, beam, &mut cover, &mut self.$blocks);
-                )+
             }
         }
     };

@@ -1,7 +1,7 @@
 //! What a beam needs to know of each type of primitive: an outline in its view, larger than the kernel's by the
 //! margins where it is to be missed, smaller where it is to cover.
 
-use super::projection::{Beam, Cover};
+use super::projection::{Beam, Cover, Points};
 use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
@@ -17,6 +17,15 @@ pub trait Outline<const N: usize, const M: usize>: Kernel<N> {
 
     /// Where every ray of the beam hits.
     fn covers<S: Simd, F: Lanes<S>>(outline: &[F; M], beam: &Beam<'_>) -> F::Mask;
+
+    /// Whether [`is_passed_by`](Self::is_passed_by) tells something, and more quickly than the kernel.
+    const LOOK_FIRST: bool = false;
+
+    /// Where rays of the beam surely do not hit within `limit`.
+    #[inline(always)]
+    fn is_passed_by<S: Simd, F: Lanes<S>>(_outline: &[F; M], rays: &Points<F>, _limit: F) -> F::Mask {
+        F::Mask::splat(rays.x.token(), false)
+    }
 
     /// An upper bound of the nearness of hits, as a product with q.
     fn nearest<S: Simd, F: Lanes<S>>(outline: &[F; M]) -> [F; 3];
@@ -129,14 +138,14 @@ impl Outline<10, TRIANGLE> for Triangle {
         let normal = to_b.cross(to_c);
         let longest_squared = to_b.dot(to_b).max(to_c.dot(to_c)).max(b_to_c.dot(b_to_c));
         let longest = longest_squared.sqrt();
-        // A hit is off by rounding errors of projected corners, which a needle's small area multiplies; and beyond
-        // the triangle's own box no kernel sees a hit, so that distances from corners are at most twice the longest side.
-        let side_margin = (longest + slack) * slack * (12.0 * beam.longest());
+        // The kernel's edge functions are off by the rounding of projected corners times their distance from the ray, and
+        // beyond the triangle's own box it sees no hit: that is at most 80 rounding errors, of the 100 that slack is.
+        let side_margin = (longest + slack) * slack * beam.longest();
         let (sides, turned, certain, nearest, farthest);
         if projection.parallel {
             sides = [side(to_b, a), side(b_to_c, b), side(-to_c, c)];
             turned = normal.z;
-            certain = turned.abs().simd_gt(slack * longest * CERTAIN);
+            certain = turned.abs().simd_gt((slack * longest * CERTAIN).max(side_margin * 3.0));
             let (slope_x, slope_y) = (normal.x / normal.z, normal.y / normal.z);
             let off = slack * longest_squared * 2.0 / turned.abs();
             let level = -(a.z + slope_x * a.x + slope_y * a.y);
@@ -145,7 +154,9 @@ impl Outline<10, TRIANGLE> for Triangle {
         } else {
             sides = [form(a.cross(to_b)), form(b.cross(b_to_c)), form(to_c.cross(a))];
             turned = normal.dot(a);
-            certain = turned.abs().simd_gt(slack * longest_squared * CERTAIN);
+            // The sides' sum is at least three margins: where one is outside for sure, another is inside for sure.
+            let least_sum = side_margin * farthest_z * 3.0;
+            certain = turned.abs().simd_gt((slack * longest_squared * CERTAIN).max(least_sum));
             let off = slack * longest_squared * 2.0 / turned.abs();
             let plane = times([normal.x, normal.y, normal.z], one / turned);
             nearest = times(plane, one + off);
@@ -154,7 +165,8 @@ impl Outline<10, TRIANGLE> for Triangle {
         // Seen from nearly within its plane the triangle has no sides: its bounds alone decide.
         let scale = certain.select(one.copysign(turned) / side_margin, zero);
         let [p, q, r] = [times(sides[0], scale), times(sides[1], scale), times(sides[2], scale)];
-        let nearest = choose(certain, nearest, no_nearer_than(nearest_z - slack * 2.0, beam));
+        // Nor does its kernel then find more of the distance than that it lies within the triangle's box.
+        let nearest = choose(certain, nearest, [zero, zero, F::splat(simd, NEAREST)]);
         [
             bounds[0],
             bounds[1],
@@ -190,6 +202,16 @@ impl Outline<10, TRIANGLE> for Triangle {
     #[inline(always)]
     fn covers<S: Simd, F: Lanes<S>>(outline: &[F; TRIANGLE], beam: &Beam<'_>) -> F::Mask {
         inside_sides(&outline[10..], beam)
+    }
+
+    const LOOK_FIRST: bool = true;
+
+    #[inline(always)]
+    fn is_passed_by<S: Simd, F: Lanes<S>>(outline: &[F; TRIANGLE], rays: &Points<F>, limit: F) -> F::Mask {
+        // Twice the margin: a shadow ray starts a little beside the line from its surface to the light.
+        let [_, _, _, _, nx, ny, nz, _, _, _, px, py, pz, qx, qy, qz, rx, ry, rz] = *outline;
+        let least = rays.value(px, py, pz).min(rays.value(qx, qy, qz)).min(rays.value(rx, ry, rz));
+        least.simd_lt(-2.0) | rays.is_too_deep([nx, ny, nz], limit)
     }
 
     #[inline(always)]

@@ -103,6 +103,81 @@ impl HalfSpace {
     }
 }
 
+/// Rays of a beam, one a lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Points<F> {
+    /// The ray's q = (x, y, 1).
+    pub x: F,
+    /// See `x`.
+    pub y: F,
+    /// View coordinate z of where the ray ends, for rays that come from elsewhere to the apex; else how much it grows
+    /// along the ray.
+    depth: F,
+    /// Whether rays start at the apex.
+    from_apex: bool,
+    /// What x and y can be off by.
+    off: F,
+    /// As the projection's.
+    parallel: bool,
+}
+
+impl<F> Points<F> {
+    /// Rays from the apex along unit directions, in perspective.
+    #[inline(always)]
+    pub fn along<S: Simd>(projection: &Projection, direction: V3<F>) -> Self
+    where
+        F: Lanes<S>,
+    {
+        let V3 { x, y, z } = projection.turn(direction);
+        let inverse = F::splat(z.token(), 1.0) / z;
+        let (x, y) = (x * inverse, y * inverse);
+        let off = (x.abs() + y.abs() + 1.0) * projection.slack_share;
+        Self { x, y, depth: z, from_apex: true, off, parallel: false }
+    }
+
+    /// Rays that end (or start) at points, and of which what lies beyond is of no interest.
+    #[inline(always)]
+    pub fn to<S: Simd>(projection: &Projection, end: V3<F>) -> Self
+    where
+        F: Lanes<S>,
+    {
+        let V3 { x, y, z } = projection.view(end);
+        let depth = z + 2.0 * projection.slack;
+        if projection.parallel {
+            let off = F::splat(z.token(), projection.slack);
+            return Self { x, y, depth, from_apex: false, off, parallel: true };
+        }
+        let inverse = F::splat(z.token(), 1.0) / z;
+        let (x, y) = (x * inverse, y * inverse);
+        let off = (x.abs() + y.abs() + 1.0) * projection.slack_share;
+        Self { x, y, depth, from_apex: false, off, parallel: false }
+    }
+
+    /// A form's value on each ray.
+    #[inline(always)]
+    pub(super) fn value<S: Simd>(&self, a: F, b: F, c: F) -> F
+    where
+        F: Lanes<S>,
+    {
+        a.mul_add(self.x, b.mul_add(self.y, c))
+    }
+
+    /// Where something with the given upper bound of nearness lies deeper than where the ray ends, `limit` along it if it
+    /// starts at the apex.
+    #[inline(always)]
+    pub(super) fn is_too_deep<S: Simd>(&self, [a, b, c]: [F; 3], limit: F) -> F::Mask
+    where
+        F: Lanes<S>,
+    {
+        let nearness = (a.abs() + b.abs()).mul_add(self.off, self.value(a, b, c));
+        if self.parallel {
+            return (nearness + self.depth).simd_lt(0.0);
+        }
+        let end = if self.from_apex { self.depth * limit } else { self.depth };
+        (nearness * end).simd_lt(1.0 - 1e-5)
+    }
+}
+
 /// What hides everything behind it, all over a beam.
 #[derive(Clone, Copy, Debug)]
 pub struct Cover {

@@ -1,35 +1,79 @@
 //! The candidates of a beam, tested ray by ray.
 
-use super::list::Places;
-use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Triangle, for_each_primitive};
+use super::list::{Candidates, Member};
+use super::outline::Outline;
+use super::projection::Points;
+use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use crate::geometry::traverse::test_place;
 use crate::geometry::{Rays, Search, Visitor};
+use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 macro_rules! define_resolve {
     ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
         impl Search<'_> {
-            /// Shows `visitor` every hit of the primitives at the given places that can matter to it.
+            /// Shows `visitor` every hit of the candidates that can matter to it. `points` are the rays as the candidates'
+            /// beam sees them.
             #[inline(always)]
             pub fn resolve<S: Simd, V: Visitor<S>>(
                 &self,
                 simd: S,
-                places: &Places,
-                rays: &Rays<S::f32s>,
+                candidates: &Candidates,
+                points: &Points<S::f32s>,
+                origin: V3<S::f32s>,
+                direction: V3<S::f32s>,
                 visitor: &mut V,
             ) {
-                $(for (block, place) in places.$blocks() {
-                    let index = self.geometry.$blocks[block].indices[place];
-                    if visitor.accepts(index) {
-                        let t_min = visitor.t_min(index);
-                        let (mask, t) = test_place!($kernel, $blocks, self, simd, block, place, rays, t_min);
-                        visitor.hit(mask & t.simd_le(visitor.limit()), t, index);
-                        if visitor.is_finished() {
-                            return;
+                $(if !candidates.$blocks.is_empty() {
+                    let rays = if $kernel::NEEDS_FRAME {
+                        Rays::new(origin, direction)
+                    } else {
+                        Rays::bare(origin, direction)
+                    };
+                    for at in 0..candidates.$blocks.len() {
+                        let Member { index, block, place } = candidates.$blocks.member(at);
+                        if <$kernel as Outline<$fields, $outline>>::LOOK_FIRST {
+                            let outline: [S::f32s; $outline] = candidates.$blocks.outline(simd, at);
+                            let passed_by = $kernel::is_passed_by(&outline, points, visitor.limit());
+                            if (passed_by | visitor.excludes(simd, index)).all_true() {
+                                continue;
+                            }
+                        }
+                        let (block, place) = (block as usize, usize::from(place));
+                        if visitor.accepts(index) {
+                            let t_min = visitor.t_min(index);
+                            let (mask, t) = test_place!($kernel, $blocks, self, simd, block, place, &rays, t_min);
+                            visitor.hit(mask & t.simd_le(visitor.limit()), t, index);
+                            if visitor.is_finished() {
+                                return;
+                            }
                         }
                     }
                 })+
+            }
+        }
+
+        impl Candidates {
+            /// Whether, by the look of their outlines, no ray can hit any candidate that matters to `visitor`.
+            #[inline(always)]
+            pub fn are_passed_by<S: Simd, V: Visitor<S>>(
+                &self,
+                simd: S,
+                points: &Points<S::f32s>,
+                visitor: &V,
+            ) -> bool {
+                $(for at in 0..self.$blocks.len() {
+                    let mut passed_by = visitor.excludes(simd, self.$blocks.member(at).index);
+                    if <$kernel as Outline<$fields, $outline>>::LOOK_FIRST {
+                        let outline: [S::f32s; $outline] = self.$blocks.outline(simd, at);
+                        passed_by |= $kernel::is_passed_by(&outline, points, visitor.limit());
+                    }
+                    if !passed_by.all_true() {
+                        return false;
+                    }
+                })+
+                true
             }
         }
     };

@@ -32,6 +32,36 @@ impl Cone {
     }
 }
 
+/// Share of a cone's radius below which its wall counts as its tip.
+const NEAR_TIP: f32 = 1.0 / 16.0;
+
+/// A point of a ray, as the cone's quadratic is written down from there.
+#[derive(Clone, Copy)]
+struct Expansion<F> {
+    /// Its distance along the ray.
+    t: F,
+    /// Its height above the cone's middle.
+    height: F,
+    /// From the axis to it.
+    across: V3<F>,
+    /// The cone's radius at its height.
+    wall: F,
+}
+
+impl<F> Expansion<F> {
+    #[inline(always)]
+    fn at<S: Simd>(fields: &[F; 9], to_middle: V3<F>, direction: V3<F>, t: F) -> Self
+    where
+        F: Lanes<S>,
+    {
+        let axis = V3::new(fields[3], fields[4], fields[5]);
+        let [radius, slope] = [fields[7], fields[8]];
+        let point = direction.scale(t) - to_middle;
+        let height = point.dot(axis);
+        Self { t, height, across: point - axis.scale(height), wall: radius + slope * height }
+    }
+}
+
 impl Kernel<9> for Cone {
     fn bounds(fields: &[f32; 9]) -> Aabb {
         let (middle, axis) = (Vec3::from_slice(&fields[0..3]), Vec3::from_slice(&fields[3..6]));
@@ -55,24 +85,31 @@ impl Kernel<9> for Cone {
         let height_weight = slope * slope + taper * taper;
         let nearest_t = ((to_middle - axis.scale(ascent)).dot(across_step) + height_weight * ascent * climb)
             / (across_step.dot(across_step) + height_weight * climb * climb);
-        let nearest = direction.scale(nearest_t) - to_middle;
-        let height = nearest.dot(axis);
-        let across = nearest - axis.scale(height);
-        let (wall, wall_step) = (radius + slope * height, slope * climb);
-
+        let wall_step = slope * climb;
         let a = across_step.dot(across_step) - wall_step * wall_step;
-        let b = across.dot(across_step) - wall * wall_step;
-        let c = across.dot(across) - wall * wall;
+        let mut from = Expansion::at(fields, to_middle, direction, nearest_t);
+        let mut b = from.across.dot(across_step) - from.wall * wall_step;
+        // Near its tip a cone is far smaller than the terms of this quadratic, whose rounding errors would move a hit
+        // by their square root: there it is solved from halfway between its roots.
+        let halfway = -b / a;
+        let at_tip = (from.wall + wall_step * halfway).abs().simd_lt(radius * NEAR_TIP)
+            & (from.height + climb * halfway).abs().simd_lt(half_height * (1.0 + NEAR_TIP));
+        if at_tip.any_true() {
+            let t = at_tip.select(nearest_t + halfway, nearest_t);
+            from = Expansion::at(fields, to_middle, direction, t);
+            b = from.across.dot(across_step) - from.wall * wall_step;
+        }
+        let c = from.across.dot(from.across) - from.wall * from.wall;
         let discriminant = b * b - a * c;
         let meets = discriminant.simd_ge(zero);
         let root = meets.select(discriminant, zero).sqrt();
         let q = -(b + b.simd_lt(zero).select(-root, root));
         let (s0, s1) = (q / a, c / q);
         // A root that is not a number (no quadratic, or a ray along the wall) fails every comparison below.
-        let valid0 = (height + climb * s0).abs().simd_le(half_height) & (nearest_t + s0).simd_gt(t_min);
-        let valid1 = (height + climb * s1).abs().simd_le(half_height) & (nearest_t + s1).simd_gt(t_min);
+        let valid0 = (from.height + climb * s0).abs().simd_le(half_height) & (from.t + s0).simd_gt(t_min);
+        let valid1 = (from.height + climb * s1).abs().simd_le(half_height) & (from.t + s1).simd_gt(t_min);
         let first = valid0 & (!valid1 | s0.simd_le(s1));
-        (meets & (valid0 | valid1), nearest_t + first.select(s0, s1))
+        (meets & (valid0 | valid1), from.t + first.select(s0, s1))
     }
 
     #[inline(always)]
@@ -82,9 +119,10 @@ impl Kernel<9> for Cone {
         let [half_height, radius, slope] = [fields[6], fields[7], fields[8]];
         let from_middle = direction.scale(t) - (middle - origin);
         let height = from_middle.dot(axis);
-        let outward = (from_middle - axis.scale(height)).normalize();
+        // At a tip, or where a needle is thinner than rounding errors, nothing is outward.
+        let outward = (from_middle - axis.scale(height)).normalize_or(V3::all(F::splat(t.token(), 0.0)));
         let position = middle + axis.scale(height) + outward.scale(radius + slope * height);
-        let normal = (outward - axis.scale(slope)).normalize();
+        let normal = (outward - axis.scale(slope)).normalize_or(-direction);
         SurfacePoint { position, normal, scale: largest(middle) + half_height + radius }
     }
 }

@@ -53,6 +53,9 @@ pub struct SurfacePoint<F> {
 
 /// What the tracer needs of a primitive type with `N` fields.
 pub trait Kernel<const N: usize> {
+    /// Whether [`intersect`](Self::intersect) uses more of the rays than origin and direction.
+    const NEEDS_FRAME: bool = false;
+
     /// The least box around the primitive; infinite for planes.
     fn bounds(fields: &[f32; N]) -> Aabb;
 

@@ -77,7 +77,8 @@ impl Kernel<4> for Sphere {
     #[inline(always)]
     fn surface<S: Simd, F: Lanes<S>>(fields: &[F; 4], origin: V3<F>, direction: V3<F>, t: F) -> SurfacePoint<F> {
         let center = V3::new(fields[0], fields[1], fields[2]);
-        let normal = (direction.scale(t) - (center - origin)).normalize();
+        // Of a sphere that is smaller than the rounding of its distance, the hit may be the centre.
+        let normal = (direction.scale(t) - (center - origin)).normalize_or(-direction);
         let position = center + normal.scale(fields[3]);
         SurfacePoint { position, normal, scale: largest(center) + fields[3] }
     }

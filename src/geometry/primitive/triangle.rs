@@ -43,14 +43,29 @@ impl Triangle {
         (b - a).cross(c - a).length_squared() == 0.0
     }
 
-    /// Barycentric weights of the three stored corners, not yet divided by their sum.
+    /// The stored corners in the plane across a ray, relative to it.
     #[inline(always)]
-    fn weights<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], rays: &Rays<F>) -> [F; 3] {
+    fn projected<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], rays: &Rays<F>) -> [[F; 2]; 3] {
         let Rays { origin, across: [right, up], .. } = *rays;
         let [a, b, c] = [corners[0] - origin, corners[1] - origin, corners[2] - origin];
-        let [(ax, ay), (bx, by), (cx, cy)] =
-            [(a.dot(right), a.dot(up)), (b.dot(right), b.dot(up)), (c.dot(right), c.dot(up))];
+        [[a.dot(right), a.dot(up)], [b.dot(right), b.dot(up)], [c.dot(right), c.dot(up)]]
+    }
+
+    /// Barycentric weights of three projected corners, not yet divided by their sum.
+    #[inline(always)]
+    fn weights<S: Simd, F: Lanes<S>>([[ax, ay], [bx, by], [cx, cy]]: [[F; 2]; 3]) -> [F; 3] {
         [bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx]
+    }
+
+    /// Whether a ray passes through the rectangle around three projected corners. All weights of a triangle that is
+    /// seen edge-on may round to 0 anywhere on its line; this keeps hits to the part of the line that it takes up.
+    #[inline(always)]
+    fn is_around<S: Simd, F: Lanes<S>>([[ax, ay], [bx, by], [cx, cy]]: [[F; 2]; 3]) -> F::Mask {
+        let zero = F::splat(ax.token(), 0.0);
+        ax.min(bx).min(cx).simd_le(zero)
+            & ax.max(bx).max(cx).simd_ge(zero)
+            & ay.min(by).min(cy).simd_le(zero)
+            & ay.max(by).max(cy).simd_ge(zero)
     }
 
     /// How far along the ray each corner lies.
@@ -83,6 +98,26 @@ impl Triangle {
         (to_min.min(to_max), to_min.max(to_max))
     }
 
+    /// Unit normal by the winding of the corners. A needle that rounding leaves without one gets one that faces the ray.
+    #[inline(always)]
+    fn normal<S: Simd, F: Lanes<S>>([a, b, c]: [V3<F>; 3], winding: F, direction: V3<F>) -> V3<F> {
+        let (ab, ac) = (b - a, c - a);
+        let normal = ab.cross(ac).scale(winding);
+        let squared = normal.dot(normal);
+        let simd = squared.token();
+        let usable = squared.simd_ge(F::splat(simd, f32::MIN_POSITIVE)) & squared.simd_le(F::splat(simd, f32::MAX));
+        if usable.all_true() {
+            return normal.normalize();
+        }
+        // Squares of areas leave the range of f32 where edges are some 1e-10 or 1e9 long.
+        let unit = F::splat(simd, 1.0);
+        let (ab, ac) = (ab.scale(unit / largest(ab)), ac.scale(unit / largest(ac)));
+        let along = ac.normalize();
+        let across = (along.scale(along.dot(direction)) - direction).normalize_or(-direction);
+        let scaled = ab.cross(ac).scale(winding).normalize_or(across);
+        V3::select(usable, normal.normalize(), scaled)
+    }
+
     /// The stored corners of a triangle given by its fields.
     #[inline(always)]
     fn corners<F: Copy>(fields: &[F; 10]) -> [V3<F>; 3] {
@@ -96,13 +131,15 @@ impl Triangle {
     /// Barycentric weights of the stored corners at the hit, summing to 1.
     #[inline(always)]
     pub fn barycentric<S: Simd, F: Lanes<S>>(fields: &[F; 10], rays: &Rays<F>) -> [F; 3] {
-        let [u, v, w] = Self::weights(&Self::corners(fields), rays);
+        let [u, v, w] = Self::weights(Self::projected(&Self::corners(fields), rays));
         let sum = u + v + w;
         [u / sum, v / sum, w / sum]
     }
 }
 
 impl Kernel<10> for Triangle {
+    const NEEDS_FRAME: bool = true;
+
     fn bounds(fields: &[f32; 10]) -> Aabb {
         Aabb::from_points([0, 3, 6].map(|i| Vec3::from_slice(&fields[i..i + 3])))
     }
@@ -110,7 +147,8 @@ impl Kernel<10> for Triangle {
     #[inline(always)]
     fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 10], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
         let corners = Self::corners(fields);
-        let [u, v, w] = Self::weights(&corners, rays);
+        let projected = Self::projected(&corners, rays);
+        let [u, v, w] = Self::weights(projected);
         // Compared with zero, not by sign bits: -0.0 on an edge is a hit.
         let zero = F::splat(u.token(), 0.0);
         let front = u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero);
@@ -120,6 +158,7 @@ impl Kernel<10> for Triangle {
         if !inside.any_true() {
             return (inside, zero);
         }
+        let inside = inside & Self::is_around(projected);
         let [depth_a, depth_b, depth_c] = Self::depths(&corners, rays);
         let t = (u * depth_a + v * depth_b + w * depth_c) / sum;
         let (near, far) = Self::box_interval(&corners, rays);
@@ -130,8 +169,9 @@ impl Kernel<10> for Triangle {
 
     #[inline(always)]
     fn surface<S: Simd, F: Lanes<S>>(fields: &[F; 10], origin: V3<F>, direction: V3<F>, t: F) -> SurfacePoint<F> {
-        let [a, b, c] = Self::corners(fields);
-        let normal = (b - a).cross(c - a).scale(fields[9]).normalize();
+        let corners = Self::corners(fields);
+        let [a, b, c] = corners;
+        let normal = Self::normal(corners, fields[9], direction);
         let reached = origin + direction.scale(t);
         let position = reached - normal.scale(normal.dot(reached - a));
         let scale = largest(a).max(largest(b)).max(largest(c)).max(largest(position));

@@ -1,7 +1,7 @@
 //! What is left of light that passes through transparent things.
 
 use super::Occluders;
-use crate::geometry::{NO_PRIMITIVE, NextCrossing, Rays, Stack};
+use crate::geometry::{NO_PRIMITIVE, NextCrossing, Stack};
 use crate::math::V3;
 use crate::render::frame::Frame;
 use crate::render::gather;
@@ -13,8 +13,8 @@ use fearless_simd::prelude::*;
 pub(super) fn transmittance<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
-    occluders: &Occluders<'_>,
-    rays: &Rays<S::f32s>,
+    occluders: &Occluders<'_, S>,
+    [origin, direction]: [V3<S::f32s>; 2],
     sources: S::u32s,
     opaque: &[bool],
     limit: S::f32s,
@@ -31,13 +31,13 @@ pub(super) fn transmittance<S: Simd>(
             let mut limit = open.select(S::f32s::from_bits(limit.to_bits() - 1), zero - 1.0);
             loop {
                 let mut next = NextCrossing::new(simd, opaque, sources, (last_t, last_primitive), limit);
-                occluders.visit(simd, rays, stack, &mut next);
+                occluders.visit(simd, origin, direction, stack, &mut next);
                 let found = next.closest.primitive.simd_ne(S::u32s::splat(simd, NO_PRIMITIVE));
                 if !found.any_true() {
                     return arriving;
                 }
                 let primitives = next.closest.primitive;
-                let crossed = gather::transmission(simd, frame, &primitives, rays, next.closest.t);
+                let crossed = gather::transmission(simd, frame, &primitives, [origin, direction], next.closest.t);
                 arriving = V3::select(found, arriving * crossed, arriving);
                 let dark = arriving.x.simd_eq(zero) & arriving.y.simd_eq(zero) & arriving.z.simd_eq(zero);
                 limit = (found & !dark).select(limit, zero - 1.0);

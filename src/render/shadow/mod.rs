@@ -8,10 +8,9 @@ use super::queue::ShadowQueue;
 use super::samples::Colors;
 use super::stats::CacheCounts;
 use super::tile::{Worker, milliseconds_since};
-use crate::geometry::beam::{Candidates, Places};
+use crate::geometry::beam::{Candidates, Points};
 use crate::geometry::{AnyHit, NO_PRIMITIVE, Opaque, Packet, PrimitiveIndex, Rays, Search, Stack, Visitor};
 use crate::math::V3;
-use crate::settings::Visibility;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use std::ops::Range;
@@ -31,7 +30,6 @@ pub struct ShadowScratch {
 struct Lists {
     whole: Candidates,
     part: Candidates,
-    places: Places,
 }
 
 impl ShadowScratch {
@@ -52,7 +50,6 @@ pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &
             if lit_by_eye || !frame.plan.shadows {
                 queue.add_gains(simd, 0..queue.len(), &mut worker.color);
             } else {
-                worker.stats.rays.shadow += queue.len() as u64;
                 resolve_light(simd, frame, light, queue, worker);
             }
         }
@@ -81,7 +78,7 @@ fn resolve_light<S: Simd>(simd: S, frame: &Frame<'_>, light: usize, queue: &mut 
     let search = Search::new(&frame.scene.geometry, frame.plan.tree);
     queue.pad();
     let mut lists = worker.shadow_scratch.lists.take().unwrap_or_default();
-    if frame.settings.visibility == Visibility::Certified {
+    if frame.plan.shadow_beams {
         for run in queue.runs.windows(2) {
             let range = run[0] as usize..run[1] as usize;
             if !range.is_empty() {
@@ -89,7 +86,7 @@ fn resolve_light<S: Simd>(simd: S, frame: &Frame<'_>, light: usize, queue: &mut 
             }
         }
     } else {
-        trace_rays(simd, frame, light, queue, 0..queue.len(), &search, None, &mut lists.places, worker);
+        trace_rays(simd, frame, light, queue, 0..queue.len(), &search, None, worker);
     }
     worker.shadow_scratch.lists = Some(lists);
 }
@@ -118,28 +115,29 @@ fn resolve_run<S: Simd>(
         None => Verdict::Unknown,
     };
     worker.stats.stages_ms.certificate += milliseconds_since(start);
-    let Lists { whole, part, places } = lists;
-    let Some(judge) = judge.filter(|_| verdict == Verdict::Listed && whole.len() >= FEW) else {
-        let suspects = Suspects { candidates: whole, judge: None };
-        return carry_out(simd, frame, light, queue, range, verdict, search, suspects, places, worker);
+    let Lists { whole, part } = lists;
+    let Some(judge) = judge.filter(|_| verdict == Verdict::Listed) else {
+        return carry_out(simd, frame, light, queue, range, verdict, search, None, worker);
     };
+    if whole.len() < FEW {
+        let suspects = Some(Suspects { candidates: whole, judge: &judge });
+        return carry_out(simd, frame, light, queue, range, verdict, search, suspects, worker);
+    }
     let parts = (range.len() / PART).max(1);
     let at = |part: usize| range.start + range.len() * part / parts;
     for number in 0..parts {
         let own = at(number)..at(number + 1);
-        let start = Instant::now();
         let verdict = judge.judge_part(simd, queue, own.clone(), whole, part);
-        worker.stats.stages_ms.certificate += milliseconds_since(start);
-        let suspects = Suspects { candidates: part, judge: (part.len() >= FEW).then_some(&judge) };
-        carry_out(simd, frame, light, queue, own, verdict, search, suspects, places, worker);
+        let suspects = Some(Suspects { candidates: part, judge: &judge });
+        carry_out(simd, frame, light, queue, own, verdict, search, suspects, worker);
     }
 }
 
-/// What can be in the way of some rays, and who can tell that more closely.
+/// What can be in the way of some rays, as a light sees it.
 #[derive(Clone, Copy)]
 struct Suspects<'a> {
     candidates: &'a Candidates,
-    judge: Option<&'a Judge<'a>>,
+    judge: &'a Judge<'a>,
 }
 
 /// Does what a verdict on some rays asks for.
@@ -151,33 +149,42 @@ fn carry_out<S: Simd>(
     range: Range<usize>,
     verdict: Verdict,
     search: &Search<'_>,
-    suspects: Suspects<'_>,
-    places: &mut Places,
+    suspects: Option<Suspects<'_>>,
     worker: &mut Worker,
 ) {
     match verdict {
-        Verdict::Dark => {}
-        Verdict::Lit => queue.add_gains(simd, range, &mut worker.color),
-        Verdict::Listed => trace_rays(simd, frame, light, queue, range, search, Some(suspects), places, worker),
-        Verdict::Unknown => trace_rays(simd, frame, light, queue, range, search, None, places, worker),
+        Verdict::Dark => worker.stats.certificates.dark += range.len() as u64,
+        Verdict::Lit => {
+            worker.stats.certificates.lit += range.len() as u64;
+            queue.add_gains(simd, range, &mut worker.color);
+        }
+        Verdict::Listed => trace_rays(simd, frame, light, queue, range, search, suspects, worker),
+        Verdict::Unknown => trace_rays(simd, frame, light, queue, range, search, None, worker),
     }
 }
 
-/// Where to look for what is in a ray's way.
-struct Occluders<'a> {
+/// Where to look for what is in the way of a packet of rays.
+struct Occluders<'a, S: Simd> {
     search: Search<'a>,
-    /// All that can be in the way, if that is known.
-    listed: Option<&'a Places>,
+    /// All that can be in the way, if that is known, and the rays as their light sees them.
+    listed: Option<(&'a Candidates, Points<S::f32s>)>,
 }
 
-impl Occluders<'_> {
+impl<S: Simd> Occluders<'_, S> {
     /// Shows `visitor` what is in the way.
     #[inline(always)]
-    fn visit<S: Simd, V: Visitor<S>>(&self, simd: S, rays: &Rays<S::f32s>, stack: &mut Stack, visitor: &mut V) {
-        match self.listed {
-            Some(places) => self.search.resolve(simd, places, rays, visitor),
+    fn visit<V: Visitor<S>>(
+        &self,
+        simd: S,
+        origin: V3<S::f32s>,
+        direction: V3<S::f32s>,
+        stack: &mut Stack,
+        visitor: &mut V,
+    ) {
+        match &self.listed {
+            Some((candidates, points)) => self.search.resolve(simd, candidates, points, origin, direction, visitor),
             None => {
-                let packet = Packet::new(self.search.geometry, rays.origin, rays.direction);
+                let packet = Packet::new(self.search.geometry, origin, direction);
                 self.search.traverse(simd, &packet, stack, visitor);
             }
         }
@@ -193,14 +200,10 @@ fn trace_rays<S: Simd>(
     range: Range<usize>,
     search: &Search<'_>,
     suspects: Option<Suspects<'_>>,
-    places: &mut Places,
     worker: &mut Worker,
 ) {
     let Worker { shadow_scratch, stack, color, stats, .. } = worker;
     let last_blocker = &mut shadow_scratch.last_blocker[light];
-    if let Some(suspects) = suspects {
-        places.take_all(suspects.candidates);
-    }
     simd.vectorize(
         #[inline(always)]
         || {
@@ -209,28 +212,29 @@ fn trace_rays<S: Simd>(
                 let lanes = at..at + S::f32s::LEN;
                 let present = (1 << (range.end - at).min(S::f32s::LEN)) - 1;
                 let mut gain: V3<S::f32s> = queue.gain.load(simd, at);
-                if let Some(Suspects { candidates, judge: Some(judge) }) = suspects {
-                    if !judge.select(simd, queue, at..lanes.end.min(range.end), candidates, places) {
-                        places.take_all(candidates);
-                    }
-                    if places.is_empty() {
-                        color.add(simd, &queue.sample[lanes], present, gain);
-                        continue;
-                    }
-                }
-                let occluders = Occluders { search: *search, listed: suspects.is_some().then_some(&*places) };
-                let rays = Rays::new(queue.origin.load(simd, at), queue.direction.load(simd, at));
-                let sources = S::u32s::from_slice(simd, &queue.source[lanes.clone()]);
+                let (origin, direction) = (queue.origin.load(simd, at), queue.direction.load(simd, at));
                 // Lanes beyond the range go nowhere.
                 let distance = <S::f32s as SimdBase<S>>::Mask::from_bitmask(simd, present)
                     .select(S::f32s::from_slice(simd, &queue.distance[lanes.clone()]), S::f32s::splat(simd, 0.0));
+                let sources = S::u32s::from_slice(simd, &queue.source[lanes.clone()]);
                 let mut visitor = AnyHit::new(simd, distance, sources, opaque);
-                if frame.settings.shadow_cache && *last_blocker != NO_PRIMITIVE {
-                    search.test_one(simd, *last_blocker, &rays, &mut visitor);
+                let mut occluders = Occluders { search: *search, listed: None };
+                if let Some(Suspects { candidates, judge }) = suspects {
+                    let points = judge.points::<S>(origin);
+                    if candidates.are_passed_by(simd, &points, &visitor) {
+                        stats.certificates.lit += u64::from(present.count_ones());
+                        color.add(simd, &queue.sample[lanes], present, gain);
+                        continue;
+                    }
+                    occluders.listed = Some((candidates, points));
+                }
+                stats.rays.shadow += u64::from(present.count_ones());
+                if frame.settings.shadow_cache && suspects.is_none() && *last_blocker != NO_PRIMITIVE {
+                    search.test_one(simd, *last_blocker, &Rays::new(origin, direction), &mut visitor);
                     count_cache(&mut stats.shadow_cache, present, visitor.blocked.to_bitmask());
                 }
                 if !visitor.is_finished() {
-                    occluders.visit(simd, &rays, stack, &mut visitor);
+                    occluders.visit(simd, origin, direction, stack, &mut visitor);
                 }
                 if visitor.blocker != NO_PRIMITIVE {
                     *last_blocker = visitor.blocker;
@@ -240,7 +244,17 @@ fn trace_rays<S: Simd>(
                     && visitor.blocked.any_false()
                 {
                     let open = visitor.blocked.select(S::f32s::splat(simd, 0.0), distance);
-                    gain = gain * crossing::transmittance(simd, frame, &occluders, &rays, sources, listed, open, stack);
+                    gain = gain
+                        * crossing::transmittance(
+                            simd,
+                            frame,
+                            &occluders,
+                            [origin, direction],
+                            sources,
+                            listed,
+                            open,
+                            stack,
+                        );
                 }
                 let open = !visitor.blocked.to_bitmask() & present;
                 color.add(simd, &queue.sample[lanes], open, gain);

@@ -1,6 +1,6 @@
 //! Many shadow rays at once: a beam from the light tells whether all arrive, or none, or what can be in their way.
 
-use crate::geometry::beam::{Beam, Blocking, Candidates, Cover, Places, Projection};
+use crate::geometry::beam::{Beam, Blocking, Candidates, Cover, Points, Projection};
 use crate::geometry::{NO_PRIMITIVE, Opaque, PrimitiveIndex, Search, Stack};
 use crate::math::V3;
 use crate::render::frame::Frame;
@@ -104,24 +104,14 @@ impl<'a> Judge<'a> {
         own: &mut Candidates,
     ) -> Verdict {
         let Some(extent) = Extent::of(simd, &self.projection, queue, part) else { return Verdict::Unknown };
-        own.filter(simd, self.search.geometry, candidates, &self.beam(&extent));
+        own.filter(simd, candidates, &self.beam(&extent));
         Verdict::of(own)
     }
 
-    /// Leaves in `places` where those candidates lie that can be in the way of some of the rays; false if that cannot
-    /// be told.
+    /// Rays to the given starts, as the light sees them.
     #[inline(always)]
-    pub fn select<S: Simd>(
-        &self,
-        simd: S,
-        queue: &ShadowQueue,
-        rays: Range<usize>,
-        candidates: &Candidates,
-        places: &mut Places,
-    ) -> bool {
-        let Some(extent) = Extent::within(simd, &self.projection, queue, rays) else { return false };
-        places.select(simd, candidates, &self.beam(&extent));
-        true
+    pub fn points<S: Simd>(&self, starts: V3<S::f32s>) -> Points<S::f32s> {
+        Points::to(&self.projection, starts)
     }
 
     /// The beam from the light to starts of the given extent.
@@ -203,40 +193,36 @@ impl Extent {
     fn of<S: Simd>(simd: S, projection: &Projection, queue: &ShadowQueue, range: Range<usize>) -> Option<Self> {
         simd.vectorize(
             #[inline(always)]
-            || Self::within(simd, projection, queue, range.clone()),
+            || {
+                let lanes = S::f32s::LEN;
+                if range.len() < lanes {
+                    return None;
+                }
+                let (infinity, one) = (S::f32s::splat(simd, f32::INFINITY), S::f32s::splat(simd, 1.0));
+                let (mut least, mut most) = (V3::all(infinity), V3::all(-infinity));
+                let mut reach = S::f32s::splat(simd, 0.0);
+                for at in range.clone().step_by(lanes) {
+                    // The last packet overlaps the one before rather than look beyond the range.
+                    let start: V3<S::f32s> = queue.origin.load(simd, at.min(range.end - lanes));
+                    let view = projection.view(start);
+                    let inverse = if projection.parallel { one } else { one / view.z };
+                    let (x, y) = (view.x * inverse, view.y * inverse);
+                    least = V3::new(least.x.min(x), least.y.min(y), least.z.min(view.z));
+                    most = V3::new(most.x.max(x), most.y.max(y), most.z.max(view.z));
+                    reach = reach.max(start.x.abs()).max(start.y.abs()).max(start.z.abs());
+                }
+                let extent = Self {
+                    x: [least.x.reduce_min(), most.x.reduce_max()],
+                    y: [least.y.reduce_min(), most.y.reduce_max()],
+                    z: [least.z.reduce_min(), most.z.reduce_max()],
+                    reach: reach.reduce_max(),
+                };
+                let mut finite = true;
+                for [from, to] in [extent.x, extent.y, extent.z] {
+                    finite &= from.is_finite() && to.is_finite();
+                }
+                (finite && (projection.parallel || extent.z[0] > 0.0)).then_some(extent)
+            },
         )
-    }
-
-    /// As [`of`](Self::of), for inlining.
-    #[inline(always)]
-    fn within<S: Simd>(simd: S, projection: &Projection, queue: &ShadowQueue, range: Range<usize>) -> Option<Self> {
-        let lanes = S::f32s::LEN;
-        if range.len() < lanes {
-            return None;
-        }
-        let (infinity, one) = (S::f32s::splat(simd, f32::INFINITY), S::f32s::splat(simd, 1.0));
-        let (mut least, mut most) = (V3::all(infinity), V3::all(-infinity));
-        let mut reach = S::f32s::splat(simd, 0.0);
-        for at in range.clone().step_by(lanes) {
-            // The last packet overlaps the one before rather than look beyond the range.
-            let start: V3<S::f32s> = queue.origin.load(simd, at.min(range.end - lanes));
-            let view = projection.view(start);
-            let inverse = if projection.parallel { one } else { one / view.z };
-            let (x, y) = (view.x * inverse, view.y * inverse);
-            least = V3::new(least.x.min(x), least.y.min(y), least.z.min(view.z));
-            most = V3::new(most.x.max(x), most.y.max(y), most.z.max(view.z));
-            reach = reach.max(start.x.abs()).max(start.y.abs()).max(start.z.abs());
-        }
-        let extent = Self {
-            x: [least.x.reduce_min(), most.x.reduce_max()],
-            y: [least.y.reduce_min(), most.y.reduce_max()],
-            z: [least.z.reduce_min(), most.z.reduce_max()],
-            reach: reach.reduce_max(),
-        };
-        let mut finite = true;
-        for [from, to] in [extent.x, extent.y, extent.z] {
-            finite &= from.is_finite() && to.is_finite();
-        }
-        (finite && (projection.parallel || extent.z[0] > 0.0)).then_some(extent)
     }
 }

@@ -7,17 +7,14 @@
 
 use super::order::Area;
 use super::{Pass, Worker, queue_tile, shade_queue};
-use crate::geometry::beam::{Beam, Candidates, Cover, Places};
-use crate::geometry::{ClosestHit, Rays, Search};
+use crate::geometry::beam::{Beam, Candidates, Cover, Points};
+use crate::geometry::{ClosestHit, Search};
 use crate::math::V3;
 use crate::render::frame::Frame;
-use crate::render::queue::RayQueue;
-use crate::render::samples::{CELL, PACKET};
 use crate::render::tile::milliseconds_since;
 use crate::render::trace;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use std::ops::Range;
 use std::time::Instant;
 
 /// Candidates of a block, of one of its quarters, and of the cells of that one.
@@ -26,7 +23,6 @@ pub struct Levels {
     block: Candidates,
     half: Candidates,
     cells: [Candidates; 4],
-    places: Places,
 }
 
 /// How far outside of a pixel's centre a beam begins, in pixels.
@@ -67,7 +63,10 @@ fn find_block<S: Simd>(
     let listed = search.collect(simd, &beam(frame, pass, area), nothing, &mut levels.block, &mut worker.stack);
     worker.stats.stages_ms.certificate += milliseconds_since(start);
     if listed && levels.block.len() <= 1 {
-        return resolve_area(simd, frame, &search, &levels.block, &mut levels.places, area, worker);
+        let start = Instant::now();
+        resolve_area(simd, frame, &search, &levels.block, area, worker);
+        worker.stats.stages_ms.visibility += milliseconds_since(start);
+        return;
     }
     for half in 4 * block..4 * block + 4 {
         if worker.order.halves[half].pixels() > 0 {
@@ -88,19 +87,22 @@ fn find_half<S: Simd>(
 ) {
     let search = trace::eye_search(frame);
     let start = Instant::now();
-    let Levels { block, half: own, cells, places } = levels;
+    let Levels { block, half: own, cells } = levels;
     let nothing = Cover::nothing(&frame.projection);
     let area = worker.order.halves[half];
     let own_beam = beam(frame, pass, area);
     let complete = if listed {
-        own.filter(simd, search.geometry, block, &own_beam);
+        own.filter(simd, block, &own_beam);
         true
     } else {
         search.collect(simd, &own_beam, nothing, own, &mut worker.stack)
     };
     if complete && own.len() <= 1 {
         worker.stats.stages_ms.certificate += milliseconds_since(start);
-        return resolve_area(simd, frame, &search, own, places, area, worker);
+        let start = Instant::now();
+        resolve_area(simd, frame, &search, own, area, worker);
+        worker.stats.stages_ms.visibility += milliseconds_since(start);
+        return;
     }
     let mut known = [true; 4];
     for (at, (cell, known)) in (4 * half..).zip(cells.iter_mut().zip(&mut known)) {
@@ -110,28 +112,26 @@ fn find_half<S: Simd>(
         }
         let beam = beam(frame, pass, area);
         if complete {
-            cell.filter(simd, search.geometry, own, &beam);
+            cell.filter(simd, own, &beam);
         } else {
             *known = search.collect(simd, &beam, nothing, cell, &mut worker.stack);
         }
     }
     worker.stats.stages_ms.certificate += milliseconds_since(start);
+    let start = Instant::now();
     for (at, (cell, known)) in (4 * half..).zip(cells.iter().zip(known)) {
         let area = worker.order.cells[at];
         if area.pixels() == 0 {
             continue;
         }
         if !known {
-            let start = Instant::now();
             trace::primary_range(simd, frame, area.start..area.start + area.pixels(), worker);
             worker.stats.pixels.traced += area.pixels() as u64;
-            worker.stats.stages_ms.visibility += milliseconds_since(start);
-        } else if cell.len() >= FEW && area.pixels() == CELL * CELL {
-            resolve_packets(simd, frame, pass, &search, cell, places, area, worker);
         } else {
-            resolve_area(simd, frame, &search, cell, places, area, worker);
+            resolve_area(simd, frame, &search, cell, area, worker);
         }
     }
+    worker.stats.stages_ms.visibility += milliseconds_since(start);
 }
 
 /// The beam of an area's rays.
@@ -139,10 +139,11 @@ fn beam<'a>(frame: &'a Frame<'_>, pass: &Pass, area: Area) -> Beam<'a> {
     let camera = &frame.camera;
     let across = |at: f32| ((pass.x + area.x) as f32 + at + pass.offset[0]) * 2.0 / camera.width as f32 - 1.0;
     let down = |at: f32| 1.0 - ((pass.y + area.y) as f32 + at + pass.offset[1]) * 2.0 / camera.height as f32;
-    let (right, bottom) = ((area.width - 1) as f32 + WIDENING, (area.height - 1) as f32 + WIDENING);
+    let widening = WIDENING * frame.beam_margin;
+    let (right, bottom) = ((area.width - 1) as f32 + widening, (area.height - 1) as f32 + widening);
     let [half_width, half_height] = frame.half_picture;
-    let x = [across(-WIDENING) * half_width, across(right) * half_width];
-    let y = [down(bottom) * half_height, down(-WIDENING) * half_height];
+    let x = [across(-widening) * half_width, across(right) * half_width];
+    let y = [down(bottom) * half_height, down(-widening) * half_height];
     Beam::new(&frame.projection, x, y).beyond(camera.near)
 }
 
@@ -152,77 +153,32 @@ fn resolve_area<S: Simd>(
     frame: &Frame<'_>,
     search: &Search<'_>,
     candidates: &Candidates,
-    places: &mut Places,
     area: Area,
     worker: &mut Worker,
 ) {
-    let start = Instant::now();
+    let Worker { rays, stats, .. } = worker;
     let pixels = area.pixels();
-    if candidates.is_certain() {
-        worker.stats.pixels.certified += pixels as u64;
-    } else {
-        worker.stats.pixels.resolved += pixels as u64;
-    }
-    places.take_all(candidates);
-    simd.vectorize(
-        #[inline(always)]
-        || resolve_range(simd, frame, search, places, area.start..area.start + pixels, &mut worker.rays),
-    );
-    worker.stats.stages_ms.visibility += milliseconds_since(start);
-}
-
-/// Candidates of a cell from which on it pays to look which of them its packets can meet.
-const FEW: usize = 3;
-
-/// Tests a whole cell's rays packet by packet, each against what it can meet.
-fn resolve_packets<S: Simd>(
-    simd: S,
-    frame: &Frame<'_>,
-    pass: &Pass,
-    search: &Search<'_>,
-    candidates: &Candidates,
-    places: &mut Places,
-    area: Area,
-    worker: &mut Worker,
-) {
-    let start = Instant::now();
-    worker.stats.pixels.resolved += area.pixels() as u64;
     simd.vectorize(
         #[inline(always)]
         || {
-            for packet in 0..(CELL / PACKET) * (CELL / PACKET) {
-                let square = Area {
-                    x: area.x + packet % 2 * PACKET,
-                    y: area.y + packet / 2 * PACKET,
-                    width: PACKET,
-                    height: PACKET,
-                    start: area.start + packet * PACKET * PACKET,
-                };
-                places.select(simd, candidates, &beam(frame, pass, square));
-                let range = square.start..square.start + square.pixels();
-                resolve_range(simd, frame, search, places, range, &mut worker.rays);
+            let eye = V3::splat(simd, frame.camera.eye);
+            let (near, far) = (S::f32s::splat(simd, frame.camera.near), S::f32s::splat(simd, frame.camera.far));
+            for at in (area.start..area.start + pixels).step_by(S::f32s::LEN) {
+                let direction: V3<S::f32s> = rays.direction.load(simd, at);
+                let points = Points::along(&frame.projection, direction);
+                let mut visitor = ClosestHit::new(simd, near, far);
+                search.resolve(simd, candidates, &points, eye, direction, &mut visitor);
+                trace::store_hits(simd, &visitor, rays, at);
             }
         },
     );
-    worker.stats.stages_ms.visibility += milliseconds_since(start);
-}
-
-/// Tests some of the rays against the primitives at the given places.
-#[inline(always)]
-fn resolve_range<S: Simd>(
-    simd: S,
-    frame: &Frame<'_>,
-    search: &Search<'_>,
-    places: &Places,
-    range: Range<usize>,
-    rays: &mut RayQueue,
-) {
-    let eye = V3::splat(simd, frame.camera.eye);
-    let (near, far) = (S::f32s::splat(simd, frame.camera.near), S::f32s::splat(simd, frame.camera.far));
-    for at in range.step_by(S::f32s::LEN) {
-        let packet = Rays::new(eye, rays.direction.load(simd, at));
-        let mut visitor = ClosestHit::new(simd, near, far);
-        search.resolve(simd, places, &packet, &mut visitor);
-        trace::store_hits(simd, &visitor, rays, at);
+    if candidates.is_certain() {
+        stats.pixels.certified += pixels as u64;
+    } else {
+        stats.pixels.resolved += pixels as u64;
+        let seen = &rays.primitive[area.start..area.start + pixels];
+        if seen.iter().all(|&primitive| primitive == seen[0]) {
+            stats.certificates.refused += pixels as u64;
+        }
     }
 }
