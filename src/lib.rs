@@ -20,7 +20,7 @@
 //!  command line ─► Settings ──────────┤
 //!  scene file ─► SceneDesc ─► Scene ──┴─► render_frame ─► Film ─► texture, PNG, EXR
 //!                                          │ plan: the cheapest pipeline that draws this scene
-//!                                          │ tiles: visibility ─► shade ─► shadows ─► secondary rays, level by level
+//!                                          │ tiles: visibility (beams) ─► shade ─► shadows (beams) ─► secondary rays
 //!                                          └─► FrameStats ─► overlay, --stats
 //! ```
 //!
@@ -35,7 +35,7 @@
 //! let camera = scene.cameras[0].camera;
 //! let (mut scratch, mut film) = (Scratch::new(), Film::new(64, 36, Planes::default()));
 //! let stats = render_frame(&scene, &camera, &Settings::exact(), &mut scratch, &mut film);
-//! assert_eq!(stats.rays.primary, 64 * 36);
+//! assert_eq!(stats.pixels.certified + stats.pixels.resolved, 64 * 36);
 //! assert!(film.rgba().iter().any(|&byte| byte > 128));
 //! # Ok::<(), raywalk::scene::SceneError>(())
 //! ```

@@ -102,7 +102,10 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, tile: &mut FilmTile, w
         }
         Supersample::Grid { side } => {
             if tile.keeps_planes() {
+                // What the grid's samples see is counted, not this.
+                let pixels = worker.stats.pixels;
                 visibility::find_all(simd, frame, &centre, worker);
+                worker.stats.pixels = pixels;
             }
             worker.render_grid(simd, frame, &centre, side);
             std::mem::swap(&mut tile.color, &mut worker.sums);

@@ -7,6 +7,8 @@
 //! outlines does not tell that all rays pass them by. Beams choose
 //! candidates; every number comes from the kernels, so that the result is that of tracing each ray on its own.
 //!
+//! Tried, and no faster: sifting once more for each packet of 4x4 pixels instead of looking at the outlines ray by ray.
+//!
 //! Margins: a kernel decides as if its primitive had been moved by some rounding errors, each at most 2^-24 of a
 //! coordinate in play. A beam takes every primitive to be larger by [`SLACK`] of the largest coordinate when it looks
 //! for what can be dropped, and smaller by as much when it looks for covers.

@@ -77,7 +77,8 @@ impl Triangle {
     }
 
     /// Where a ray enters and leaves the box around the corners, widened by [`HIT_PADDING`]. Of a triangle seen edge-on,
-    /// or of a needle, the weights are all but rounding errors: what they say of the distance is held to this.
+    /// or of a needle, the weights are all but rounding errors: what they say of the distance is held to this. (Asking
+    /// first whether that is needed made no frame faster.)
     #[inline(always)]
     fn box_interval<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], rays: &Rays<F>) -> (F, F) {
         let [a, b, c] = *corners;
