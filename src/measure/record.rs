@@ -67,6 +67,7 @@ struct Certificates {
     /// Shadow rays a frame that were known to arrive, or not to, without being traced.
     shadow_rays_lit: Value,
     shadow_rays_dark: Value,
+    mirrored_rays: Value,
 }
 
 impl Certificates {
@@ -79,6 +80,7 @@ impl Certificates {
             false_reject_rate: share(certificates.refused, certificates.refused + pixels.certified),
             shadow_rays_lit: run.per_frame(&certificates.lit),
             shadow_rays_dark: run.per_frame(&certificates.dark),
+            mirrored_rays: run.per_frame(&certificates.mirrored),
         }
     }
 }

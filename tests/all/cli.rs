@@ -320,7 +320,10 @@ fn stats_say_everything_promised() {
         ("pixels", &["traced", "resolved", "certified", "interpolated"]),
         ("stages_ms", &["visibility", "certificate", "shadow", "shade", "secondary", "resolve", "present"]),
         ("shadow_cache", &["queries", "hits"]),
-        ("certificates", &["certified_share", "false_reject_rate", "shadow_rays_lit", "shadow_rays_dark"]),
+        (
+            "certificates",
+            &["certified_share", "false_reject_rate", "shadow_rays_lit", "shadow_rays_dark", "mirrored_rays"],
+        ),
     ] {
         for key in keys {
             assert!(stats[group][key].is_number(), "{group}.{key}: {}", stats[group]);
