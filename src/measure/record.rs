@@ -67,6 +67,7 @@ struct Certificates {
     /// Shadow rays a frame that were known to arrive, or not to, without being traced.
     shadow_rays_lit: Value,
     shadow_rays_dark: Value,
+    /// Mirrored rays a frame that were tested against a list of candidates.
     mirrored_rays: Value,
 }
 

@@ -1,10 +1,10 @@
 //! What flat mirrors show of the eye's rays: a beam from the mirrored eye tells what a run of mirrored rays can meet.
 //!
 //! This is beam tracing's step from a mirror onwards (Heckbert and Hanrahan, SIGGRAPH 1984), for candidates only. That
-//! rays pass the mirrored eye is not taken for granted: offsets, rounding and bad normals (of needles, say) move them.
-//! Seen from any apex, a ray's points lie between its start and its direction; a beam that holds both holds the ray. How
-//! far the lines pass the apex is measured, too, and has to be within half of what beams allow for, which is made twice
-//! what kernels need.
+//! rays come from the mirrored eye is not taken for granted: offsets, rounding and bad normals (of needles, say) move
+//! them. Seen from any apex, a ray's points lie between its start and its direction; a beam that holds both holds the
+//! ray. How far the lines pass by the apex is measured, too, and has to be within half of what beams allow for, which is
+//! made twice what kernels need.
 
 use super::extent::{Extent, FEW, Lists, parts};
 use super::frame::Frame;

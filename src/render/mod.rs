@@ -1,8 +1,8 @@
 //! One frame from scene, camera and settings. No window, no file.
 //!
 //! `frame` makes the plan and hands tiles to workers; `tile` runs one tile: `visibility` finds what each sample sees,
-//! then queue by queue `shade` adds local light and queues rays, `shadow` and `trace` trace them, `secondary` follows
-//! mirrors and glass; `resolve` encodes the result. All of it runs in lanes, a packet of rays at a time.
+//! then queue by queue `shade` adds local light and queues rays, `shadow`, `mirror` and `trace` trace them, `secondary`
+//! follows mirrors and glass; `resolve` encodes the result. All of it runs in lanes, a packet of rays at a time.
 
 mod absorption;
 mod brdf;
