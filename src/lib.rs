@@ -35,7 +35,8 @@
 //! let camera = scene.cameras[0].camera;
 //! let (mut scratch, mut film) = (Scratch::new(), Film::new(64, 36, Planes::default()));
 //! let stats = render_frame(&scene, &camera, &Settings::exact(), &mut scratch, &mut film);
-//! assert_eq!(stats.pixels.certified + stats.pixels.resolved, 64 * 36);
+//! let pixels = stats.pixels;
+//! assert_eq!(pixels.certified + pixels.resolved + pixels.traced, 64 * 36);
 //! assert!(film.rgba().iter().any(|&byte| byte > 128));
 //! # Ok::<(), raywalk::scene::SceneError>(())
 //! ```
