@@ -6,6 +6,7 @@ use super::resolve::Encoder;
 use super::samples::{Colors, PACKET, pixel_at, sample_at};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use rayon::prelude::*;
 
 /// Edge of a tile in pixels. Tiles are the unit of work and of memory.
 pub const TILE: usize = 64;
@@ -172,14 +173,26 @@ impl Film {
         (tile, y % TILE * tile.width + x % TILE)
     }
 
-    /// Copies the tiles' encoded pixels into the row-by-row picture.
-    pub(super) fn assemble(&mut self) {
+    /// Copies the tiles' encoded pixels into the row-by-row picture: each row of tiles is a strip of its own.
+    pub(super) fn assemble(&mut self, threads: Option<&rayon::ThreadPool>) {
         let row_bytes = self.width as usize * 4;
-        for tile in &self.tiles {
-            for (row, pixels) in tile.rgba.chunks_exact(tile.width).enumerate() {
-                let start = (tile.y + row) * row_bytes + tile.x * 4;
-                self.rgba[start..start + tile.width * 4].copy_from_slice(pixels.as_flattened());
-            }
+        let (strip_bytes, tiles_across) = (row_bytes * TILE, (self.width as usize).div_ceil(TILE));
+        let copy = |(strip, tiles): (&mut [u8], &[FilmTile])| assemble_strip(strip, tiles, row_bytes);
+        match threads {
+            Some(threads) => threads.install(|| {
+                self.rgba.par_chunks_mut(strip_bytes).zip(self.tiles.par_chunks(tiles_across)).for_each(copy);
+            }),
+            None => self.rgba.chunks_mut(strip_bytes).zip(self.tiles.chunks(tiles_across)).for_each(copy),
+        }
+    }
+}
+
+/// Copies the encoded pixels of a row of tiles.
+fn assemble_strip(strip: &mut [u8], tiles: &[FilmTile], row_bytes: usize) {
+    for tile in tiles {
+        for (row, pixels) in tile.rgba.chunks_exact(tile.width).enumerate() {
+            let start = row * row_bytes + tile.x * 4;
+            strip[start..start + tile.width * 4].copy_from_slice(pixels.as_flattened());
         }
     }
 }

@@ -206,7 +206,7 @@ pub fn render_frame(
         Some(threads) => threads.install(|| film.tiles.par_iter_mut().with_max_len(1).for_each(work)),
         None => film.tiles.iter_mut().for_each(work),
     }
-    film.assemble();
+    film.assemble(threads.as_ref());
 
     let mut stats = FrameStats { completed: !cancel.is_cancelled(), ..FrameStats::default() };
     for worker in workers.iter_mut() {
