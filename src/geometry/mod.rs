@@ -237,7 +237,8 @@ impl Geometry {
         self.ids.is_empty()
     }
 
-    /// Unit normal and a point of the plane that a primitive lies in; `None` if it is not flat.
+    /// Unit normal and a point of the plane that a primitive lies in; `None` if it is not flat, or too small or too large
+    /// for its normal to be computed so.
     pub fn plane_of(&self, primitive: PrimitiveIndex) -> Option<(Vec3, Vec3)> {
         let slot = self.slots[primitive as usize];
         let (block, place) = (slot.block as usize, usize::from(slot.place));
@@ -245,7 +246,9 @@ impl Geometry {
             PrimitiveKind::Triangle => {
                 let [ax, ay, az, bx, by, bz, cx, cy, cz, _] = self.triangles[block].get(place);
                 let [a, b, c] = [Vec3::new(ax, ay, az), Vec3::new(bx, by, bz), Vec3::new(cx, cy, cz)];
-                (b - a).cross(c - a).try_normalize().map(|normal| (normal, a))
+                let normal = (b - a).cross(c - a);
+                let usable = f32::MIN_POSITIVE..f32::MAX;
+                usable.contains(&normal.length_squared()).then(|| (normal.normalize(), a))
             }
             PrimitiveKind::Disk => {
                 let [x, y, z, nx, ny, nz, _] = self.disks[block].get(place);

@@ -62,7 +62,7 @@ pub struct Record {
 struct Certificates {
     /// Share of all pixels whose block was proven to see one thing.
     certified_share: f64,
-    /// Of the pixels that lie in blocks that see one thing, the share in blocks for which that was not proven.
+    /// Of the pixels in blocks with a list of candidates that see one thing, the share for which that was not proven.
     false_reject_rate: f64,
     /// Shadow rays a frame that were known to arrive, or not to, without being traced.
     shadow_rays_lit: Value,

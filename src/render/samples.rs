@@ -13,15 +13,15 @@ pub const GRID: usize = TILE + 1;
 /// All samples of a tile, those of the border last.
 pub const SAMPLES: usize = GRID * GRID;
 
-/// Edge of the squares of pixels that make a packet, a cell, half a block, and a block.
+/// Edge of the squares of pixels that make a packet, a cell, a quarter of a block, and a block.
 pub const PACKET: usize = 4;
 pub const CELL: usize = 8;
-pub const HALF: usize = 16;
+pub const QUARTER: usize = 16;
 pub const BLOCK: usize = 32;
 
 /// Which sample of the tile's grid a pixel is.
 ///
-/// Pixels are numbered in the order in which their rays are queued: the four blocks of 32 x 32, in each its four halves
+/// Pixels are numbered in the order in which their rays are queued: the four blocks of 32 x 32, in each its four quarters
 /// of 16 x 16, in each its cells of 8 x 8, in each its packets of 4 x 4, in each its pixels row by row. So what is
 /// proven for a block holds for rays in a row, and what a packet of rays from the eye adds lies side by side.
 /// The border's samples follow: first the column on the right, then the row below.
@@ -33,7 +33,7 @@ pub fn sample_at(x: usize, y: usize) -> u32 {
     } else if y == TILE {
         TILE * TILE + GRID + x
     } else {
-        let packet = ((quarter(BLOCK) * 4 + quarter(HALF)) * 4 + quarter(CELL)) * 4 + quarter(PACKET);
+        let packet = ((quarter(BLOCK) * 4 + quarter(QUARTER)) * 4 + quarter(CELL)) * 4 + quarter(PACKET);
         packet * PACKET * PACKET + y % PACKET * PACKET + x % PACKET
     };
     sample as u32
@@ -52,7 +52,7 @@ pub fn pixel_at(sample: u32) -> [u16; 2] {
         // The quarters' numbers are two bits each: across, then down.
         let along = |quarters: usize, pixel: usize| {
             quarters / 64 % 2 * BLOCK
-                + quarters / 16 % 2 * HALF
+                + quarters / 16 % 2 * QUARTER
                 + quarters / 4 % 2 * CELL
                 + quarters % 2 * PACKET
                 + pixel

@@ -59,7 +59,7 @@ pub struct CacheCounts {
 /// What beams told without a ray, and where they told too little.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CertificateCounts {
-    /// Pixels that were tested against candidates although all of their cell saw one thing: refused in vain.
+    /// Pixels that were tested against candidates although all of their area saw one thing: refused in vain.
     pub refused: u64,
     /// Shadow rays that were known to arrive.
     pub lit: u64,

@@ -72,13 +72,19 @@ fn times<S: Simd, F: Lanes<S>>([a, b, c]: [F; 3], factor: F) -> [F; 3] {
     [a * factor, b * factor, c * factor]
 }
 
+/// Whether a value is above `least`, and not so large that it may have left the range of f32.
+#[inline(always)]
+fn is_between<S: Simd, F: Lanes<S>>(value: F, least: F) -> F::Mask {
+    value.simd_gt(least) & value.simd_lt(1e36)
+}
+
 /// Sides: three forms, at least 1 all over what is certainly inside, below -1 somewhere in a beam that is outside.
 #[inline(always)]
 fn outside_sides<S: Simd, F: Lanes<S>>(sides: &[F], beam: &Beam<'_>) -> F::Mask {
-    let one = F::splat(sides[0].token(), -1.0);
-    beam.range([sides[0], sides[1], sides[2]]).1.simd_lt(one)
-        | beam.range([sides[3], sides[4], sides[5]]).1.simd_lt(one)
-        | beam.range([sides[6], sides[7], sides[8]]).1.simd_lt(one)
+    let least = F::splat(sides[0].token(), -1.0);
+    beam.range([sides[0], sides[1], sides[2]]).1.simd_lt(least)
+        | beam.range([sides[3], sides[4], sides[5]]).1.simd_lt(least)
+        | beam.range([sides[6], sides[7], sides[8]]).1.simd_lt(least)
 }
 
 /// See [`outside_sides`].
@@ -145,7 +151,7 @@ impl Outline<10, TRIANGLE> for Triangle {
         if projection.parallel {
             sides = [side(to_b, a), side(b_to_c, b), side(-to_c, c)];
             turned = normal.z;
-            certain = turned.abs().simd_gt((slack * longest * CERTAIN).max(side_margin * 3.0));
+            certain = is_between(turned.abs(), (slack * longest * CERTAIN).max(side_margin * 3.0));
             let (slope_x, slope_y) = (normal.x / normal.z, normal.y / normal.z);
             let off = slack * longest_squared * 2.0 / turned.abs();
             let level = -(a.z + slope_x * a.x + slope_y * a.y);
@@ -156,7 +162,7 @@ impl Outline<10, TRIANGLE> for Triangle {
             turned = normal.dot(a);
             // The sides' sum is at least three margins: where one is outside for sure, another is inside for sure.
             let least_sum = side_margin * farthest_z * 3.0;
-            certain = turned.abs().simd_gt((slack * longest_squared * CERTAIN).max(least_sum));
+            certain = is_between(turned.abs(), (slack * longest_squared * CERTAIN).max(least_sum));
             let off = slack * longest_squared * 2.0 / turned.abs();
             let plane = times([normal.x, normal.y, normal.z], one / turned);
             nearest = times(plane, one + off);
@@ -426,10 +432,11 @@ impl Outline<7, DISK> for Disk {
         const LEAST_COSINE: f32 = 1.0 / 16.0;
         let [x, y, z, _, smaller, _, normal_x, normal_y, normal_z, height, _] = *outline;
         let (center, normal) = (V3::new(x, y, z), V3::new(normal_x, normal_y, normal_z));
-        let mut covered = smaller.simd_gt(0.0);
         if beam.projection.parallel {
-            return covered & smaller.simd_lt(0.0);
+            // Seldom lit straight: not worth a formula of its own.
+            return F::Mask::splat(x.token(), false);
         }
+        let mut covered = smaller.simd_gt(0.0);
         for corner in beam.corners() {
             let corner = V3::splat(x.token(), corner);
             let t = height / normal.dot(corner);
@@ -488,7 +495,8 @@ impl Outline<9, CONE> for Cone {
 
     #[inline(always)]
     fn covers<S: Simd, F: Lanes<S>>(outline: &[F; CONE], _beam: &Beam<'_>) -> F::Mask {
-        outline[3].simd_lt(0.0)
+        // What a ray misses through the open ends is no convex set: cones never hide anything.
+        F::Mask::splat(outline[0].token(), false)
     }
 
     #[inline(always)]

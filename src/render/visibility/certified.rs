@@ -21,7 +21,7 @@ use std::time::Instant;
 #[derive(Debug, Default)]
 pub struct Levels {
     block: Candidates,
-    half: Candidates,
+    quarter: Candidates,
     cells: [Candidates; 4],
 }
 
@@ -68,28 +68,28 @@ fn find_block<S: Simd>(
         worker.stats.stages_ms.visibility += milliseconds_since(start);
         return;
     }
-    for half in 4 * block..4 * block + 4 {
-        if worker.order.halves[half].pixels() > 0 {
-            find_half(simd, frame, pass, half, listed, levels, worker);
+    for quarter in 4 * block..4 * block + 4 {
+        if worker.order.quarters[quarter].pixels() > 0 {
+            find_quarter(simd, frame, pass, quarter, listed, levels, worker);
         }
     }
 }
 
-/// Finds the hits of half a block, whose own candidates are known if they are `listed`.
-fn find_half<S: Simd>(
+/// Finds the hits of a quarter of a block, whose own candidates are known if they are `listed`.
+fn find_quarter<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     pass: &Pass,
-    half: usize,
+    quarter: usize,
     listed: bool,
     levels: &mut Levels,
     worker: &mut Worker,
 ) {
     let search = trace::eye_search(frame);
     let start = Instant::now();
-    let Levels { block, half: own, cells } = levels;
+    let Levels { block, quarter: own, cells } = levels;
     let nothing = Cover::nothing(&frame.projection);
-    let area = worker.order.halves[half];
+    let area = worker.order.quarters[quarter];
     let own_beam = beam(frame, pass, area);
     let complete = if listed {
         own.filter(simd, block, &own_beam);
@@ -105,7 +105,7 @@ fn find_half<S: Simd>(
         return;
     }
     let mut known = [true; 4];
-    for (at, (cell, known)) in (4 * half..).zip(cells.iter_mut().zip(&mut known)) {
+    for (at, (cell, known)) in (4 * quarter..).zip(cells.iter_mut().zip(&mut known)) {
         let area = worker.order.cells[at];
         if area.pixels() == 0 {
             continue;
@@ -119,7 +119,7 @@ fn find_half<S: Simd>(
     }
     worker.stats.stages_ms.certificate += milliseconds_since(start);
     let start = Instant::now();
-    for (at, (cell, known)) in (4 * half..).zip(cells.iter().zip(known)) {
+    for (at, (cell, known)) in (4 * quarter..).zip(cells.iter().zip(known)) {
         let area = worker.order.cells[at];
         if area.pixels() == 0 {
             continue;

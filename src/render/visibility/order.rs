@@ -1,7 +1,7 @@
 //! The order in which a tile's pixels follow each other, so that those of a block, of a cell and of a packet lie together.
 
 use crate::render::film::TILE;
-use crate::render::samples::{BLOCK, CELL, HALF, pixel_at};
+use crate::render::samples::{BLOCK, CELL, QUARTER, pixel_at};
 
 /// A rectangle of a tile's pixels that follow each other.
 #[derive(Clone, Copy, Debug)]
@@ -36,8 +36,8 @@ pub struct Order {
     /// Its blocks.
     pub blocks: Vec<Area>,
     /// Four a block, in the blocks' order.
-    pub halves: Vec<Area>,
-    /// Four a half, in the halves' order.
+    pub quarters: Vec<Area>,
+    /// Four a quarter, in the quarters' order.
     pub cells: Vec<Area>,
 }
 
@@ -52,13 +52,13 @@ impl Order {
         self.x.clear();
         self.y.clear();
         self.blocks.clear();
-        self.halves.clear();
+        self.quarters.clear();
         self.cells.clear();
         // In the order of their numbers.
         for sample in 0..(TILE * TILE) as u32 {
             let [x, y] = pixel_at(sample);
             let corner = [usize::from(x), usize::from(y)];
-            for (areas, edge) in [(&mut self.blocks, BLOCK), (&mut self.halves, HALF), (&mut self.cells, CELL)] {
+            for (areas, edge) in [(&mut self.blocks, BLOCK), (&mut self.quarters, QUARTER), (&mut self.cells, CELL)] {
                 if (sample as usize).is_multiple_of(edge * edge) {
                     areas.push(area(corner, edge, [width, height], self.samples.len()));
                 }
@@ -89,15 +89,15 @@ mod tests {
         for [width, height] in [[64, 64], [1, 1], [64, 16], [33, 7], [5, 50]] {
             let mut order = Order::default();
             order.prepare(width, height);
-            assert_eq!(order.halves.len(), 4 * order.blocks.len());
-            assert_eq!(order.cells.len(), 4 * order.halves.len());
+            assert_eq!(order.quarters.len(), 4 * order.blocks.len());
+            assert_eq!(order.cells.len(), 4 * order.quarters.len());
             let mut seen = vec![false; width * height];
             for &sample in &order.samples {
                 let [x, y] = pixel_at(sample);
                 assert!(!std::mem::replace(&mut seen[usize::from(y) * width + usize::from(x)], true));
             }
             assert!(seen.into_iter().all(|s| s));
-            for areas in [&order.blocks, &order.halves, &order.cells] {
+            for areas in [&order.blocks, &order.quarters, &order.cells] {
                 let mut next = 0;
                 for area in areas {
                     assert_eq!(area.start, next);
