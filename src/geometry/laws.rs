@@ -2,22 +2,20 @@
 
 use super::primitive::{Cone, Disk, HIT_PADDING, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use super::*;
+use crate::math::random::SplitMix64;
 use crate::math::{SimdToken, V3, dispatch};
 use crate::settings::SimdLevel;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::{DVec3, Vec3};
 
-/// SplitMix64 (Steele, Lea and Flood, OOPSLA 2014).
-struct Random(u64);
+/// Random numbers and what tests make of them.
+struct Random(SplitMix64);
 
 impl Random {
     /// Uniform in [min, max).
     fn within(&mut self, min: f64, max: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        min + (max - min) * ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        self.0.within(min, max)
     }
 
     /// A unit vector; one in four all but along an axis.
@@ -145,7 +143,7 @@ fn place(random: &mut Random) -> (DVec3, f64) {
 
 #[test]
 fn bounds_contain_hits() {
-    let mut random = Random(1);
+    let mut random = Random(SplitMix64(1));
     for &kind in PrimitiveKind::ALL {
         let mut outside = Vec::new();
         let mut count = 0;
@@ -184,7 +182,7 @@ fn bounds_contain_hits() {
 
 #[test]
 fn surfaces_lie_where_rays_hit_and_have_unit_normals() {
-    let mut random = Random(2);
+    let mut random = Random(SplitMix64(2));
     for &kind in PrimitiveKind::ALL {
         for _ in 0..2000 {
             let (center, size) = place(&mut random);
@@ -212,7 +210,7 @@ fn surfaces_lie_where_rays_hit_and_have_unit_normals() {
 
 #[test]
 fn every_path_gives_the_same_bits() {
-    let mut random = Random(3);
+    let mut random = Random(SplitMix64(3));
     for round in 0..40 {
         let scale = random.magnitude(-4.0, 5.0);
         let center = random.direction() * if round % 2 == 0 { 0.0 } else { 300.0 * scale };
@@ -279,7 +277,7 @@ fn icosphere(levels: u32) -> (Vec<DVec3>, Vec<[usize; 3]>) {
 fn closed_meshes_do_not_leak() {
     let (points, faces) = icosphere(3);
     assert_eq!((points.len(), faces.len()), (642, 1280));
-    let mut random = Random(4);
+    let mut random = Random(SplitMix64(4));
     for (center, radius) in [
         (DVec3::ZERO, 1.0),
         (DVec3::ZERO, 1e-5),
@@ -318,9 +316,9 @@ fn closed_meshes_do_not_leak() {
 #[test]
 fn a_heap_of_equal_primitives_is_searched_to_the_end() {
     for &kind in PrimitiveKind::ALL {
-        let shapes = vec![shape(kind, &mut Random(6), DVec3::ZERO, 1.0, 0.9); 2000];
+        let shapes = vec![shape(kind, &mut Random(SplitMix64(6)), DVec3::ZERO, 1.0, 0.9); 2000];
         let geometry = geometry(shapes);
-        let mut random = Random(7);
+        let mut random = Random(SplitMix64(7));
         let rays = rays_around(&mut random, DVec3::ZERO, 1.0, 64);
         for use_bvh in [false, true] {
             let found = dispatch!(SimdToken::best(), simd => closest(simd, &geometry, use_bvh, &rays));

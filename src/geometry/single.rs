@@ -105,13 +105,7 @@ impl Search<'_> {
                 let place = candidates.trailing_zeros() as usize;
                 candidates &= candidates - 1;
                 let near = distances[place];
-                // Sorted so that the nearest is on top.
-                let mut at = depth;
-                while at > bottom && stack[at - 1].near < near {
-                    stack[at] = stack[at - 1];
-                    at -= 1;
-                }
-                stack[at] = Pending { child: node.children[place], near };
+                Pending { child: node.children[place], near }.insert(stack, bottom..depth);
                 depth += 1;
             }
         }

@@ -39,6 +39,20 @@ pub(super) struct Pending {
     pub near: f32,
 }
 
+impl Pending {
+    /// Puts the subtree among those that its node has left waiting, at the places `siblings`, one more afterwards:
+    /// sorted so that the nearest is on top.
+    #[inline(always)]
+    pub fn insert(self, stack: &mut [Self; STACK], siblings: Range<usize>) {
+        let mut at = siblings.end;
+        while at > siblings.start && stack[at - 1].near < self.near {
+            stack[at] = stack[at - 1];
+            at -= 1;
+        }
+        stack[at] = self;
+    }
+}
+
 /// Subtrees that can wait at once: seven a level of an eight-wide tree, and trees are far less deep than this.
 pub(super) const STACK: usize = 512;
 
@@ -125,13 +139,7 @@ impl<'a> Search<'a> {
                 }
                 let outside = S::f32s::splat(simd, f32::MAX);
                 let near = enters.select(distance, outside).reduce_min();
-                // Sorted so that the nearest is on top.
-                let mut at = depth;
-                while at > bottom && stack[at - 1].near < near {
-                    stack[at] = stack[at - 1];
-                    at -= 1;
-                }
-                stack[at] = Pending { child: node.children[place], near };
+                Pending { child: node.children[place], near }.insert(stack, bottom..depth);
                 depth += 1;
             }
             if depth + WIDTH > STACK {

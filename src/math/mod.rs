@@ -5,6 +5,8 @@
 
 pub mod arctangent;
 pub mod power;
+#[cfg(test)]
+pub mod random;
 pub mod simd;
 pub mod vector;
 

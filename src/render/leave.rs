@@ -48,18 +48,16 @@ mod tests {
     use crate::geometry::{
         ClosestHit, Geometry, NO_PRIMITIVE, Packet, Part, PrimitiveId, PrimitiveKind, Search, Shape, Stack,
     };
+    use crate::math::random::SplitMix64;
     use crate::math::{SimdToken, dispatch};
     use glam::Vec3;
 
-    /// SplitMix64 (Steele, Lea and Flood, OOPSLA 2014).
-    struct Random(u64);
+    /// Random numbers and what tests make of them.
+    struct Random(SplitMix64);
 
     impl Random {
         fn within(&mut self, min: f64, max: f64) -> f64 {
-            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            min + (max - min) * ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+            self.0.within(min, max)
         }
 
         fn direction(&mut self) -> Vec3 {
@@ -124,7 +122,7 @@ mod tests {
     /// A ray that leaves the outside of something convex never meets it again, at any scale and place.
     #[test]
     fn what_was_left_is_not_met_again() {
-        let mut random = Random(1);
+        let mut random = Random(SplitMix64(1));
         let token = SimdToken::best();
         for &kind in PrimitiveKind::ALL {
             let (mut left, mut met) = (0, Vec::new());

@@ -4,20 +4,18 @@ use super::{Beam, Blocking, Candidates, Cover, Points, Projection};
 use crate::geometry::{
     AnyHit, ClosestHit, Geometry, NO_PRIMITIVE, Opaque, Packet, Part, PrimitiveId, PrimitiveKind, Search, Shape, Stack,
 };
+use crate::math::random::SplitMix64;
 use crate::math::{SimdToken, V3, dispatch};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::Vec3;
 
-/// SplitMix64 (Steele, Lea and Flood, OOPSLA 2014).
-struct Random(u64);
+/// Random numbers and what tests make of them.
+struct Random(SplitMix64);
 
 impl Random {
     fn within(&mut self, min: f32, max: f32) -> f32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        min + (max - min) * ((z ^ (z >> 31)) >> 40) as f32 / (1_u64 << 24) as f32
+        self.0.within(min.into(), max.into()) as f32
     }
 
     fn point(&mut self) -> Vec3 {
@@ -134,7 +132,7 @@ fn closest<S: Simd>(simd: S, case: &Case, random: &mut Random) -> (usize, usize)
 /// A beam's rays see through its candidates what they see on their own, bit for bit.
 #[test]
 fn candidates_are_all_that_rays_can_see() {
-    let mut random = Random(7);
+    let mut random = Random(SplitMix64(7));
     for &kind in PrimitiveKind::ALL {
         let mut hits = 0;
         for number in 0..400 {
@@ -186,7 +184,7 @@ fn shadows<S: Simd>(simd: S, case: &Case, random: &mut Random) -> (usize, usize)
 /// What a beam says of shadow rays is what they say themselves, of point lights and of directional ones.
 #[test]
 fn verdicts_are_those_of_the_rays() {
-    let mut random = Random(11);
+    let mut random = Random(SplitMix64(11));
     for &kind in PrimitiveKind::ALL {
         for parallel in [false, true] {
             let mut blocked = 0;
