@@ -144,7 +144,7 @@ fn kind_of_light(light: &Light) -> &'static str {
 
 fn describe_texture(texture: &Texture) -> String {
     match texture {
-        Texture::Image(image) => format!("image {}x{}", image.width, image.height),
+        Texture::Image(image) => format!("image {}x{}", image.texels.width(), image.texels.height()),
         Texture::Checker { size, .. } => format!("checker of size {size}"),
     }
 }

@@ -42,7 +42,7 @@ impl SceneCounts {
 fn texture_bytes(texture: &Texture) -> usize {
     size_of::<Texture>()
         + match texture {
-            Texture::Image(image) => image.texels.len() * 3,
+            Texture::Image(image) => image.texels.bytes(),
             Texture::Checker { .. } => 0,
         }
 }

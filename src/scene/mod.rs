@@ -17,6 +17,7 @@ pub mod limits;
 pub mod material;
 pub mod object;
 pub mod path;
+pub mod texels;
 pub mod texture;
 
 pub use builtin::builtin;

@@ -5,6 +5,7 @@ use crate::scene::desc::map::shortened;
 use crate::scene::desc::problem::{Outcome, Problem};
 use crate::scene::files::{FileError, Files};
 use crate::scene::limits::{Limits, exceeded};
+use crate::scene::texels::Texels;
 use crate::scene::texture::ImageTexture;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
 use std::collections::HashMap;
@@ -12,14 +13,6 @@ use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
-
-/// Decoded texels of a file.
-#[derive(Clone, Debug)]
-struct Picture {
-    width: u32,
-    height: u32,
-    texels: Arc<[[u8; 3]]>,
-}
 
 /// Why an image could not be decoded.
 #[derive(Debug, thiserror::Error)]
@@ -34,12 +27,14 @@ enum DecodeError {
     Panicked,
     #[error("it has no pixels")]
     Empty,
+    #[error("it has too many pixels")]
+    Size,
 }
 
 /// The images of a scene by file, and how many bytes more they may take.
 pub struct ImageStore {
     files: Files,
-    decoded: HashMap<PathBuf, Picture>,
+    decoded: HashMap<PathBuf, Arc<Texels>>,
     bytes_left: u64,
     limits: Limits,
 }
@@ -55,8 +50,8 @@ impl ImageStore {
         let name = shortened(&file.name);
         let unreadable = |error: FileError| Problem::new(file.at, format!("cannot read image \"{name}\": {error}"));
         let path = self.files.locate(&file.name).map_err(unreadable)?;
-        let picture = match self.decoded.get(&path) {
-            Some(picture) => picture.clone(),
+        let texels = match self.decoded.get(&path) {
+            Some(texels) => Arc::clone(texels),
             None => {
                 let bytes = self.files.read(&path).map_err(unreadable)?;
                 let undecodable = |error| {
@@ -65,22 +60,21 @@ impl ImageStore {
                         format!("cannot decode image \"{name}\" (PNG, JPEG and BMP are known): {error}"),
                     )
                 };
-                let picture = self.decode(&bytes).map_err(undecodable)?;
-                self.bytes_left = self.bytes_left.saturating_sub(picture.texels.len() as u64 * 3);
-                self.decoded.insert(path, picture.clone());
-                picture
+                let texels = Arc::new(self.decode(&bytes).map_err(undecodable)?);
+                self.bytes_left = self.bytes_left.saturating_sub(decoded_bytes(texels.width(), texels.height()));
+                self.decoded.insert(path, Arc::clone(&texels));
+                texels
             }
         };
-        let Picture { width, height, texels } = picture;
-        Ok(ImageTexture { width, height, texels, size })
+        Ok(ImageTexture { texels, size })
     }
 
-    fn decode(&self, bytes: &[u8]) -> Result<Picture, DecodeError> {
+    fn decode(&self, bytes: &[u8]) -> Result<Texels, DecodeError> {
         // The decoders are meant never to panic on damaged files; should one do so, only its image is lost.
         catch_unwind(AssertUnwindSafe(|| self.decode_unguarded(bytes))).unwrap_or(Err(DecodeError::Panicked))
     }
 
-    fn decode_unguarded(&self, bytes: &[u8]) -> Result<Picture, DecodeError> {
+    fn decode_unguarded(&self, bytes: &[u8]) -> Result<Texels, DecodeError> {
         let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(ImageError::IoError)?;
         let mut decoder = reader.into_decoder()?;
         let (width, height) = decoder.dimensions();
@@ -90,8 +84,7 @@ impl ImageStore {
         if width == 0 || height == 0 {
             return Err(DecodeError::Empty);
         }
-        let texel_bytes = u64::from(width) * u64::from(height) * 3;
-        if decoder.total_bytes().max(texel_bytes) > self.bytes_left {
+        if decoder.total_bytes().max(decoded_bytes(width, height)) > self.bytes_left {
             return Err(DecodeError::Budget(self.limits.texture_bytes));
         }
         let mut limits = image::Limits::no_limits();
@@ -99,6 +92,11 @@ impl ImageStore {
         decoder.set_limits(limits)?;
         // Alpha is left out; 16-bit channels are reduced to 8.
         let pixels = DynamicImage::from_decoder(decoder)?.into_rgb8().into_raw();
-        Ok(Picture { width, height, texels: pixels.as_chunks().0.into() })
+        Texels::new(width, height, pixels.as_chunks().0).ok_or(DecodeError::Size)
     }
+}
+
+/// Bytes of a decoded picture, as the budget counts them.
+fn decoded_bytes(width: u32, height: u32) -> u64 {
+    u64::from(width) * u64::from(height) * 3
 }

@@ -81,9 +81,10 @@ fn plane_axes(n: DVec3) -> [DVec3; 2] {
 
 /// Bilinear between texel centres, repeated, v upwards.
 fn sample(image: &ImageTexture, uv: DVec2) -> DVec3 {
-    let (width, height) = (i64::from(image.width), i64::from(image.height));
+    let (width, height) = (i64::from(image.texels.width()), i64::from(image.texels.height()));
     let texel = |x: i64, y: i64| {
-        let [r, g, b] = image.texels[(y.rem_euclid(height) * width + x.rem_euclid(width)) as usize].map(srgb_to_linear);
+        let [x, y] = [x.rem_euclid(width), y.rem_euclid(height)].map(|place| place as u32);
+        let [r, g, b] = image.texels.texel(x, y).map(srgb_to_linear);
         DVec3::new(r.into(), g.into(), b.into())
     };
     let (x, y) = (uv.x * width as f64 - 0.5, -uv.y * height as f64 - 0.5);
