@@ -9,6 +9,9 @@ use crate::math::power::pow;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
+/// Lane mask of native width.
+type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
+
 /// The reflection models of a packet's hits, gathered once for all lights.
 pub(super) struct Reflectance<S: Simd> {
     phong: Option<Phong<S>>,
@@ -19,8 +22,16 @@ pub(super) struct Reflectance<S: Simd> {
 struct Phong<S: Simd> {
     /// (1-t) diffuse color.
     matte: V3<S::f32s>,
-    /// Colour and exponent of the highlight, if any lane has one.
-    highlight: Option<(V3<S::f32s>, S::f32s)>,
+    /// If any lane has one.
+    highlight: Option<Highlight<S>>,
+}
+
+/// specular (n·h)^shininess.
+struct Highlight<S: Simd> {
+    specular: V3<S::f32s>,
+    shininess: S::f32s,
+    /// Square of the n·h up to which nothing is seen of it.
+    edge2: S::f32s,
 }
 
 /// Lambert under a Trowbridge-Reitz highlight with the height-correlated Smith term and Schlick's Fresnel.
@@ -49,7 +60,11 @@ impl<S: Simd> Reflectance<S> {
             let matte = opacity * materials.triple(simd, Row::Diffuse) * color;
             let mut highlight = None;
             if frame.plan.highlights && materials.any(|m| m.shiny) {
-                highlight = Some((materials.triple(simd, Row::Specular), materials.row(simd, Row::Shininess as usize)));
+                highlight = Some(Highlight {
+                    specular: materials.triple(simd, Row::Specular),
+                    shininess: materials.row(simd, Row::Shininess as usize),
+                    edge2: materials.row(simd, Row::HighlightEdge2 as usize),
+                });
             }
             phong = Some(Phong { matte, highlight });
         }
@@ -62,18 +77,20 @@ impl<S: Simd> Reflectance<S> {
         Self { phong, metallic_roughness }
     }
 
-    /// The share of a light's colour that goes to the viewer. All directions are unit vectors away from the surface.
+    /// The share of a light's colour that goes to the viewer, for the lanes that the light is `reaching`; others get
+    /// anything. All directions are unit vectors away from the surface.
     #[inline(always)]
     pub fn towards(
         &self,
         simd: S,
+        reaching: Mask<S>,
         normal: V3<S::f32s>,
         to_viewer: V3<S::f32s>,
         to_light: V3<S::f32s>,
         n_dot_l: S::f32s,
     ) -> V3<S::f32s> {
         let mut reflected = match &self.phong {
-            Some(phong) => phong.towards(normal, to_viewer, to_light, n_dot_l),
+            Some(phong) => phong.towards(reaching, normal, to_viewer, to_light, n_dot_l),
             None => V3::all(S::f32s::splat(simd, 0.0)),
         };
         if let Some(model) = &self.metallic_roughness {
@@ -88,15 +105,22 @@ impl<S: Simd> Phong<S> {
     #[inline(always)]
     fn towards(
         &self,
+        reaching: Mask<S>,
         normal: V3<S::f32s>,
         to_viewer: V3<S::f32s>,
         to_light: V3<S::f32s>,
         n_dot_l: S::f32s,
     ) -> V3<S::f32s> {
         let matte = self.matte.scale(n_dot_l);
-        let Some((specular, shininess)) = self.highlight else { return matte };
-        let half = (to_light + to_viewer).normalize();
-        let n_dot_h = positive::<S>(normal.dot(half));
+        let Some(Highlight { specular, shininess, edge2 }) = self.highlight else { return matte };
+        let half = to_light + to_viewer;
+        let (along, length2) = (normal.dot(half), half.dot(half));
+        let seen = reaching & along.simd_gt(0.0) & (along * along).simd_gt(length2 * edge2);
+        // Most packets lie outside of most highlights: the power takes as long as all the rest.
+        if !seen.any_true() {
+            return matte;
+        }
+        let n_dot_h = seen.select(along / length2.sqrt(), S::f32s::splat(along.token(), 0.0));
         matte + specular.scale(pow::<S, S::f32s>(n_dot_h, shininess))
     }
 }

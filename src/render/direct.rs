@@ -70,7 +70,7 @@ pub(super) fn light_gain<S: Simd>(
             (reaching, to.scale(inverse), above * inverse, distance)
         }
     };
-    let reflected = reflectance.towards(simd, lit.normal, lit.to_viewer, to_light, n_dot_l);
+    let reflected = reflectance.towards(simd, reaching, lit.normal, lit.to_viewer, to_light, n_dot_l);
     Some((reaching, to_light, distance, lit.weight * arriving * reflected))
 }
 

@@ -34,10 +34,12 @@ pub enum Row {
     Transparency = 24,
     /// Index of refraction.
     Ior = 27,
+    /// Square of the n·h up to which nothing is seen of a Blinn-Phong highlight.
+    HighlightEdge2 = 28,
 }
 
 /// Numbers a material has.
-pub const ROWS: usize = 28;
+pub const ROWS: usize = 29;
 
 /// One material, flattened.
 #[derive(Clone, Debug)]
@@ -90,6 +92,7 @@ impl FlatMaterial {
                 put(Row::Diffuse, &diffuse.to_array());
                 put(Row::Specular, &specular.to_array());
                 put(Row::Shininess, &[shininess]);
+                put(Row::HighlightEdge2, &[highlight_edge2(shininess)]);
                 put(Row::Roughness, &[-1.0]);
             }
             Model::MetallicRoughness { ambient, metallic, roughness } => {
@@ -113,6 +116,11 @@ impl FlatMaterial {
             secondary: smooth && (mirrors || material.is_transparent()),
         }
     }
+}
+
+/// Square of the n·h at which (n·h)^shininess is 2^-24: less changes no colour of the highlight's order.
+fn highlight_edge2(shininess: f32) -> f32 {
+    libm::exp2(-48.0 / f64::from(shininess).abs()) as f32
 }
 
 impl FlatMaterial {
