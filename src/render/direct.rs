@@ -49,11 +49,15 @@ pub(super) fn light_gain<S: Simd>(
         LightKind::Point { position } | LightKind::Spot { position, .. } => {
             let to = V3::splat(simd, position) - lit.position;
             let above = lit.normal.dot(to);
+            let distance2 = to.dot(to);
             let mut reaching = lit.active & above.simd_gt(zero);
+            if let LightKind::Spot { direction, cos_outer, .. } = light.kind {
+                reaching &= near_cone::<S>(V3::splat(simd, -direction).dot(to), distance2, cos_outer);
+            }
             if !reaching.any_true() {
                 return None;
             }
-            let distance = to.dot(to).sqrt();
+            let distance = distance2.sqrt();
             let inverse = one / distance;
             if let LightKind::Spot { direction, cos_inner, cos_outer, .. } = light.kind {
                 let cosine = V3::splat(simd, -direction).dot(to) * inverse;
@@ -72,6 +76,21 @@ pub(super) fn light_gain<S: Simd>(
     };
     let reflected = reflectance.towards(simd, reaching, lit.normal, lit.to_viewer, to_light, n_dot_l);
     Some((reaching, to_light, distance, lit.weight * arriving * reflected))
+}
+
+/// Whether a point may lie inside a spot's cone, `along` its axis at a squared distance from the apex; needs no root.
+/// Says so of every point that [`spot_share`] gives any light.
+#[inline(always)]
+fn near_cone<S: Simd>(along: S::f32s, distance2: S::f32s, cos_outer: f32) -> Mask<S> {
+    // Far more than what the share's cosine is rounded by.
+    const SLACK: f32 = 1e-4;
+    let zero = S::f32s::splat(along.token(), 0.0);
+    let edge = cos_outer - SLACK;
+    // A cone that is nearly flat or wider: all points may.
+    if edge <= SLACK {
+        return along.simd_eq(along);
+    }
+    along.simd_gt(zero) & (along * along).simd_ge(distance2 * (edge * edge))
 }
 
 /// How much of a spot's light goes along a direction: the square of a linear ramp between the cosines of its two
