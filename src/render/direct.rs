@@ -88,7 +88,7 @@ fn near_cone<S: Simd>(along: S::f32s, distance2: S::f32s, cos_outer: f32) -> Mas
     let edge = cos_outer - SLACK;
     // A cone that is nearly flat or wider: all points may.
     if edge <= SLACK {
-        return along.simd_eq(along);
+        return Mask::<S>::splat(along.token(), true);
     }
     along.simd_gt(zero) & (along * along).simd_ge(distance2 * (edge * edge))
 }
@@ -129,6 +129,27 @@ mod tests {
         // A sharp edge is 0.001 wide, in cosines.
         let cosine = 30.0_f32.to_radians().cos() + 0.0005;
         assert!((share(cosine.acos().to_degrees(), 30.0, 30.0) - 0.25).abs() < 1e-3);
+    }
+
+    fn near_lanes<S: Simd>(simd: S, angle: f32, distance: f32, outer: f32) -> bool {
+        let along = S::f32s::splat(simd, angle.to_radians().cos() * distance);
+        near_cone::<S>(along, S::f32s::splat(simd, distance * distance), outer.to_radians().cos()).all_true()
+    }
+
+    #[test]
+    fn what_a_spot_lights_is_near_its_cone() {
+        let near =
+            |angle, distance, outer| dispatch!(SimdToken::best(), simd => near_lanes(simd, angle, distance, outer));
+        for outer in [0.03, 1.0, 30.0, 72.0, 89.99, 90.0, 120.0] {
+            for distance in [1e-3, 0.3, 1.0, 77.7, 1e6] {
+                for part in [0.0, 0.5, 0.99, 1.0] {
+                    assert!(near(part * outer, distance, outer), "{part} of {outer} at {distance}");
+                }
+                if outer < 80.0 {
+                    assert!(!near(outer + 2.0, distance, outer) && !near(179.0, distance, outer), "{outer}");
+                }
+            }
+        }
     }
 
     #[test]

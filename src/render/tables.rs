@@ -200,3 +200,18 @@ impl Tables {
         if self.opaque.is_empty() { Opaque::All } else { Opaque::Listed(&self.opaque) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn highlights_end_where_they_are_too_weak_to_be_seen() {
+        for shininess in [1.0_f32, 50.0, 1e4] {
+            let edge = f64::from(highlight_edge2(shininess)).sqrt();
+            let left = edge.powf(shininess.into()) * f64::from(1 << 24);
+            assert!((left - 1.0).abs() < 1e-2, "{shininess}: {left}");
+        }
+        assert_eq!(highlight_edge2(0.0), 0.0);
+    }
+}
