@@ -126,8 +126,9 @@ pub(super) struct Frame<'a> {
     pub around_eye: &'a [u32],
     /// Whether anybody asks what samples see.
     pub keeps_seen: bool,
-    /// Whether the film keeps anything of what it sees, and normals among it.
+    /// Whether the film keeps anything of what it sees.
     pub keeps_planes: bool,
+    /// Whether anybody asks for the normals of what samples see.
     pub keeps_normals: bool,
     pub encoder: Encoder,
 }
@@ -189,7 +190,7 @@ pub fn render_frame(
         around_eye,
         keeps_seen: film.planes().any() || settings.visibility == Visibility::Subsample,
         keeps_planes: film.planes().any(),
-        keeps_normals: film.planes().normal,
+        keeps_normals: film.planes().normal || plan.trails,
         encoder: Encoder::new(settings),
     };
 

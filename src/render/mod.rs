@@ -27,6 +27,7 @@ pub mod stats;
 mod tables;
 mod tile;
 mod trace;
+mod trail;
 mod visibility;
 
 pub use film::{Film, Planes};

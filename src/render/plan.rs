@@ -3,7 +3,7 @@
 use super::tables::{FlatMaterial, Tables};
 use crate::geometry::PrimitiveKind;
 use crate::scene::Scene;
-use crate::settings::{Settings, SphereCache, Visibility};
+use crate::settings::{Fill, Settings, SphereCache, Visibility};
 use glam::Vec3;
 
 /// What a frame runs. Made once a frame; nothing below asks settings or scene again.
@@ -41,6 +41,8 @@ pub struct Plan {
     pub emission: bool,
     /// Some surface is metallic-roughness.
     pub metallic_roughness: bool,
+    /// Keep what each pixel's paths met: only where that is the same are colours interpolated.
+    pub trails: bool,
     /// Most rays on a path.
     pub depth: u32,
 }
@@ -81,6 +83,7 @@ impl Plan {
             highlights: tables.materials.iter().any(|m| m.shiny),
             emission: tables.materials.iter().any(|m| m.emissive),
             metallic_roughness: tables.materials.iter().any(|m| m.metallic_roughness),
+            trails: settings.visibility == Visibility::Subsample && settings.fill == Fill::Color,
             depth,
         }
     }

@@ -6,6 +6,7 @@ use super::frame::Frame;
 use super::media::{Media, MediaMark};
 use super::queue::{RUN, RayQueue, ShadowQueue};
 use super::samples::{Colors, SAMPLES, sample_at};
+use super::trail::Trails;
 use super::{FrameStats, mirror, shade, shadow, trace, visibility};
 use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex, Stack};
 use crate::settings::{Supersample, Visibility};
@@ -31,6 +32,8 @@ pub struct Worker {
     pub(super) color: Colors,
     /// What each sample sees, and how far away.
     pub(super) seen: Vec<Seen>,
+    /// What the samples' paths met, if the plan keeps that.
+    pub(super) trails: Trails,
     pub(super) cells: visibility::Cells,
     pub(super) order: visibility::Order,
     pub(super) levels: Option<Box<visibility::Levels>>,
@@ -181,6 +184,9 @@ impl Worker {
             }
             let certificate = self.stats.stages_ms.certificate - certificate;
             self.stats.stages_ms.secondary += milliseconds_since(start) - certificate;
+            if frame.plan.trails {
+                self.trails.note_hits(level, &self.rays, &frame.scene.geometry.ids);
+            }
         }
     }
 

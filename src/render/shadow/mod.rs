@@ -188,7 +188,7 @@ fn trace_rays<S: Simd>(
     worker: &mut Worker,
 ) {
     let &LightRays { light, queue, search } = rays;
-    let Worker { shadow_scratch, stack, color, stats, .. } = worker;
+    let Worker { shadow_scratch, stack, color, trails, stats, .. } = worker;
     let last_blocker = &mut shadow_scratch.last_blocker[light];
     simd.vectorize(
         #[inline(always)]
@@ -234,6 +234,9 @@ fn trace_rays<S: Simd>(
                     gain = gain * transmittance(simd, frame, &occluders, &flight, listed, stack);
                 }
                 let open = !visitor.blocked.to_bitmask() & present;
+                if frame.plan.trails {
+                    trails.note_light(light, &queue.sample[lanes.clone()], open);
+                }
                 color.add(simd, &queue.sample[lanes], open, gain);
             }
         },

@@ -9,6 +9,7 @@ use crate::render::tile::{Seen, milliseconds_since};
 use crate::render::trace;
 use crate::settings::Fill;
 use fearless_simd::Simd;
+use glam::Vec3;
 use std::ops::{Add, Mul, Sub};
 use std::time::Instant;
 
@@ -136,17 +137,15 @@ fn fill_colors<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, cells: &mut Cel
         cells.list_new_corners();
         if !cells.pixels.is_empty() {
             trace_pixels(simd, frame, pass, &cells.pixels, worker);
+            worker.trails.restart(&worker.rays);
             shade_queue(simd, frame, worker);
             worker.stats.pixels.traced += own_pixels(&cells.pixels, pass);
         }
         let start = Instant::now();
         cells.next.clear();
         for cell in &cells.current {
-            let matches = common_primitive(cell, &worker.seen).is_some()
-                && colors_match(cell, &worker.color, frame.settings.match_threshold);
-            if matches {
-                worker.stats.pixels.interpolated +=
-                    interpolate(cell, pass, &mut cells.done, (&mut worker.color, &mut worker.seen), frame.keeps_planes);
+            if corners_match(cell, worker, frame.settings.match_threshold) {
+                worker.stats.pixels.interpolated += interpolate(cell, pass, &mut cells.done, worker, frame.keeps_planes);
             } else {
                 Cells::split(&mut cells.next, cell);
             }
@@ -154,6 +153,22 @@ fn fill_colors<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, cells: &mut Cel
         std::mem::swap(&mut cells.current, &mut cells.next);
         worker.stats.stages_ms.visibility += milliseconds_since(start);
     }
+}
+
+/// Corners whose normals are farther apart, as a cosine, are not interpolated between: 5 degrees.
+const LEAST_COSINE: f32 = 0.9962;
+
+/// Whether a cell's corners see the same primitive under the same lights, alike turned and coloured, and the same things
+/// mirrored and refracted in it.
+fn corners_match(cell: &Cell, worker: &Worker, threshold: f32) -> bool {
+    let Worker { seen, color, trails, .. } = worker;
+    let Some(primitive) = common_primitive(cell, seen) else { return false };
+    let corners = cell.corners().map(|[x, y]| sample_at(x.into(), y.into()) as usize);
+    let normals = corners.map(|corner| Vec3::from(seen[corner].normal));
+    let turned = |normal: &Vec3| normal.dot(normals[0]) < LEAST_COSINE;
+    corners.iter().all(|&corner| trails.of(corner) == trails.of(corners[0]))
+        && (primitive == NO_PRIMITIVE || !normals.iter().any(turned))
+        && colors_match(cell, color, threshold)
 }
 
 /// Whether no channel of the corners' colours differs by more than the threshold.
@@ -172,9 +187,10 @@ fn interpolate(
     cell: &Cell,
     pass: &Pass,
     done: &mut [bool],
-    (color, seen): (&mut Colors, &mut [Seen]),
+    worker: &mut Worker,
     keeps_planes: bool,
 ) -> u64 {
+    let Worker { color, seen, trails, .. } = worker;
     let corners = cell.corners().map(|[x, y]| sample_at(x.into(), y.into()) as usize);
     let colors = corners.map(|corner| color.get(corner));
     let views = corners.map(|corner| seen[corner]);
@@ -190,12 +206,13 @@ fn interpolate(
         color.set(sample, bilinear(colors, u, v));
         // Corners of finer cells nearby ask what this pixel sees; where, only planes ask.
         seen[sample].primitive = views[0].primitive;
+        seen[sample].normal = std::array::from_fn(|c| bilinear(views.map(|view| view.normal[c]), u, v));
+        trails.copy(corners[0], sample);
         if keeps_planes {
             seen[sample].t = match views[0].primitive {
                 NO_PRIMITIVE => f32::INFINITY,
                 _ => bilinear(views.map(|view| view.t), u, v),
             };
-            seen[sample].normal = std::array::from_fn(|c| bilinear(views.map(|view| view.normal[c]), u, v));
         }
         filled += 1;
     }
