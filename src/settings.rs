@@ -91,7 +91,7 @@ pub struct Settings {
     pub visibility: Visibility,
     /// Grid spacing of `subsample`, in pixels: 2, 4, 8 or 16.
     pub stride: u32,
-    /// How `subsample` fills a matching cell.
+    /// How a cell that sees one thing is filled.
     pub fill: Fill,
     /// Largest difference of any channel between corner colours that `Fill::Color` interpolates over.
     pub match_threshold: f32,
@@ -156,14 +156,14 @@ impl Settings {
         }
     }
 
-    /// The preset `balanced`: where the window starts. Cells whose corners agree are interpolated.
+    /// The preset `balanced`: where the window starts. What is seen is proven; light is interpolated where it is smooth.
     pub fn balanced() -> Self {
-        Self { visibility: Visibility::Subsample, fill: Fill::Color, min_weight: 1.0 / 512.0, ..Self::exact() }
+        Self { fill: Fill::Color, min_weight: 1.0 / 512.0, ..Self::exact() }
     }
 
-    /// The preset `fast`: as `balanced` on a coarser grid, and less particular.
+    /// The preset `fast`: subsampling on a coarse grid, not very particular.
     pub fn fast() -> Self {
-        Self { stride: 16, match_threshold: 32.0 / 255.0, ..Self::balanced() }
+        Self { visibility: Visibility::Subsample, stride: 16, match_threshold: 32.0 / 255.0, ..Self::balanced() }
     }
 }
 
@@ -186,10 +186,14 @@ pub const PRESETS: &[Preset] = &[
     },
     Preset {
         name: "balanced",
-        help: "subsampling, colours interpolated where corners agree",
+        help: "what is seen is proven; light is interpolated where it is smooth",
         settings: Settings::balanced,
     },
-    Preset { name: "fast", help: "as balanced, on a coarser grid and less particular", settings: Settings::fast },
+    Preset {
+        name: "fast",
+        help: "subsampling on a coarse grid, colours interpolated where corners agree",
+        settings: Settings::fast,
+    },
 ];
 
 /// What a value of a setting promises about the picture, against the default of `exact`.
@@ -325,7 +329,7 @@ pub const ROWS: &[Row] = &[
         visibility, ["certified" => Visibility::Certified, same; "full" => Visibility::Full, same; "subsample" => Visibility::Subsample, approximate]),
     choice_row!("stride", "grid of subsample, in pixels",
         stride, ["8" => 8, approximate; "2" => 2, approximate; "4" => 4, approximate; "16" => 16, approximate]),
-    choice_row!("fill", "how a matching cell is filled: hit re-uses the primitive and shades every pixel, color interpolates colours",
+    choice_row!("fill", "how a cell that sees one thing is filled: hit shades every pixel, color interpolates (if certified, light alone)",
         fill, ["hit" => Fill::Hit, approximate; "color" => Fill::Color, approximate]),
     Row {
         name: "match-threshold",

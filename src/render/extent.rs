@@ -47,8 +47,7 @@ impl Extent {
     /// Flatter rays (cosine against `forward`) are too far apart.
     const LEAST_COSINE: f32 = 0.5;
 
-    /// The extent of some rays, in perspective if directions are given; `None` if some are not in front of the apex, or
-    /// too few.
+    /// The extent of some rays, in perspective if directions are given; `None` if some are not in front of the apex.
     pub fn of<S: Simd>(
         simd: S,
         projection: &Projection,
@@ -60,17 +59,17 @@ impl Extent {
             #[inline(always)]
             || {
                 let lanes = S::f32s::LEN;
-                if range.len() < lanes {
-                    return None;
-                }
+                // Of fewer rays than lanes the first stands for the lanes without one.
+                let inside = <S::f32s as SimdBase<S>>::Mask::from_bitmask(simd, (1 << range.len().min(lanes)) - 1);
+                let first_start = V3::splat(simd, starts.get(range.start));
                 let (infinity, one) = (S::f32s::splat(simd, f32::INFINITY), S::f32s::splat(simd, 1.0));
                 let (mut least, mut most) = (V3::all(infinity), V3::all(-infinity));
                 let (mut reach, mut beside) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 0.0));
                 let mut least_cosine = one;
                 for at in range.clone().step_by(lanes) {
                     // The last packet overlaps the one before rather than look beyond the range.
-                    let at = at.min(range.end - lanes);
-                    let start: V3<S::f32s> = starts.load(simd, at);
+                    let at = at.min(range.end.saturating_sub(lanes).max(range.start));
+                    let start: V3<S::f32s> = V3::select(inside, starts.load(simd, at), first_start);
                     let view = projection.view(start);
                     let inverse = if projection.parallel { one } else { one / view.z };
                     let (x, y) = (view.x * inverse, view.y * inverse);
@@ -78,7 +77,11 @@ impl Extent {
                     most = V3::new(most.x.max(x), most.y.max(y), most.z.max(view.z));
                     reach = reach.max(start.x.abs()).max(start.y.abs()).max(start.z.abs());
                     if let Some(directions) = directions {
-                        let ahead = projection.turn(directions.load(simd, at));
+                        let ahead = projection.turn(V3::select(
+                            inside,
+                            directions.load(simd, at),
+                            V3::splat(simd, directions.get(range.start)),
+                        ));
                         let inverse = one / ahead.z;
                         let (to_x, to_y) = (ahead.x * inverse, ahead.y * inverse);
                         least = V3::new(least.x.min(to_x), least.y.min(to_y), least.z);
@@ -101,6 +104,13 @@ impl Extent {
                 (usable && (projection.parallel || extent.z[0] > 0.0)).then_some(extent)
             },
         )
+    }
+
+    /// The extent with so large a share of its size more on every side.
+    pub fn widened(self, share: f32) -> Self {
+        let by = share * self.width();
+        let more = |[from, to]: [f32; 2], by: f32| [from - by, to + by];
+        Self { x: more(self.x, by), y: more(self.y, by), z: more(self.z, share * (self.z[1] - self.z[0])), ..self }
     }
 
     /// The larger of its width and height.

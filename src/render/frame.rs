@@ -131,6 +131,8 @@ pub(super) struct Frame<'a> {
     /// Whether anybody asks for the normals of what samples see.
     pub keeps_normals: bool,
     pub encoder: Encoder,
+    /// What exposure multiplies light by.
+    pub gain: f32,
 }
 
 /// Renders one frame into `film`.
@@ -191,6 +193,7 @@ pub fn render_frame(
         keeps_seen: film.planes().any() || settings.visibility == Visibility::Subsample,
         keeps_planes: film.planes().any(),
         keeps_normals: film.planes().normal || plan.trails,
+        gain: libm::exp2f(settings.exposure),
         encoder: Encoder::new(settings),
     };
 

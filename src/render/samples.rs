@@ -108,6 +108,12 @@ impl Colors {
         self.0.load(simd, first)
     }
 
+    /// Sets the colours of the samples that start at `first`.
+    #[inline(always)]
+    pub fn store<S: Simd>(&mut self, _: S, first: usize, colors: V3<S::f32s>) {
+        self.0.store::<S>(first, colors);
+    }
+
     /// Adds light to the samples of the lanes in the bit set `lanes`; no two of them are the same sample.
     #[inline(always)]
     pub fn add<S: Simd>(&mut self, simd: S, samples: &[u32], lanes: u64, light: V3<S::f32s>) {

@@ -8,6 +8,7 @@ use super::gather::{Hits, Surfaces, surfaces, surfaces_of_one, surfaces_of_sever
 use super::leave;
 use super::materials::{Materials, MixedMaterials, OneMaterial};
 use super::queue::{RayQueue, ShadowPacket};
+use super::samples::CELL;
 use super::secondary::{self, Incident};
 use super::tables::{FlatMaterial, Row};
 use super::tile::{Seen, Worker};
@@ -15,7 +16,25 @@ use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex};
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use glam::Vec3;
 use std::ops::Range;
+
+/// The colour in which surfaces are shaded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Paint {
+    /// Their own.
+    #[default]
+    Own,
+    /// White instead, for light that a texture is to be multiplied by.
+    White,
+    /// Black instead, for light that does not depend on the colour.
+    Black,
+}
+
+impl Paint {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Own, Self::White, Self::Black];
+}
 
 /// Lane mask of native width.
 type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
@@ -66,6 +85,13 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
         let Worker { rays, color, .. } = worker;
         let background = rays.weights(simd, at) * V3::splat(simd, frame.scene.render.background);
         color.deposit(simd, level == 1, &rays.sample[lanes], present::<S>(rays, at), background);
+    } else if level == 1 && is_lit(worker, at) {
+        if let Some(primitive) = hits.common.filter(|_| frame.plan.reflections || frame.plan.refractions) {
+            simd.vectorize(
+                #[inline(always)]
+                || follow_one(simd, frame, at, primitive, worker),
+            );
+        }
     } else if let Some(primitive) = hits.common {
         // Nearly all packets are such: apart from the others they need no masks and no loops over what else was hit.
         simd.vectorize(
@@ -95,6 +121,33 @@ fn shade_one<S: Simd>(
     let rays = Incoming::load(simd, &worker.rays, at);
     let surfaces = surfaces_of_one(simd, frame, &hits, primitive, rays.origin, rays.direction, rays.t);
     shade_surfaces(simd, frame, level, at, &hits, &rays, &surfaces, &OneMaterial::of(frame, primitive), worker);
+}
+
+/// Whether the samples of the packet at `at` have their local light.
+#[inline(always)]
+fn is_lit(worker: &Worker, at: usize) -> bool {
+    worker.lit_cells != 0
+        && worker.paint.is_none()
+        && worker.lit_cells >> (worker.rays.sample[at] as usize / (CELL * CELL)) & 1 == 1
+}
+
+/// Appends what follows from the packet at `at`, whose hits are all of one primitive, without local light.
+#[inline(always)]
+fn follow_one<S: Simd>(simd: S, frame: &Frame<'_>, at: usize, primitive: PrimitiveIndex, worker: &mut Worker) {
+    let materials = OneMaterial::of(frame, primitive);
+    if !Materials::<S>::any(&materials, |material| material.secondary) {
+        return;
+    }
+    let primitives = S::u32s::from_slice(simd, &worker.rays.primitive[at..at + S::f32s::LEN]);
+    let hits = Hits::new(simd, primitives.as_slice());
+    let rays = Incoming::load(simd, &worker.rays, at);
+    let surfaces = surfaces_of_one(simd, frame, &hits, primitive, rays.origin, rays.direction, rays.t);
+    let mut color = materials.triple(simd, Row::Color);
+    if frame.plan.textures && Materials::<S>::any(&materials, FlatMaterial::is_textured) {
+        materials.look_up(simd, frame, &hits, &surfaces, &mut color, &mut V3::zero(simd));
+    }
+    let view = View::new(simd, &surfaces, rays.direction);
+    follow(simd, frame, 1, at, &hits, &rays, &surfaces, &view, &materials, color, worker);
 }
 
 /// Shades the packet at `at`, whose hits are of several primitives.
@@ -142,19 +195,24 @@ fn shade_surfaces<S: Simd>(
     worker: &mut Worker,
 ) {
     let lanes = at..at + S::f32s::LEN;
-    let Worker { rays, mirrored, refracted, shadows, media, color: colors, seen, stats, .. } = worker;
+    let Worker { rays, shadows, color: colors, seen, paint, .. } = worker;
+    let paint = *paint;
     let samples = &rays.sample[lanes.clone()];
     let &Incoming { direction, weight, .. } = incoming;
     let view = View::new(simd, surfaces, direction);
-    if level == 1 && frame.keeps_normals {
+    if level == 1 && frame.keeps_normals && paint.is_none() {
         for lane in hits.lanes() {
             seen[samples[lane] as usize].normal = view.normal.lane(lane).into();
         }
     }
 
-    let mut color = materials.triple(simd, Row::Color);
+    let mut color = match paint.unwrap_or_default() {
+        Paint::Own => materials.triple(simd, Row::Color),
+        Paint::White => V3::splat(simd, Vec3::ONE),
+        Paint::Black => V3::zero(simd),
+    };
     let mut emission = if frame.plan.emission { materials.triple(simd, Row::Emission) } else { V3::zero(simd) };
-    if frame.plan.textures && materials.any(FlatMaterial::is_textured) {
+    if frame.plan.textures && paint.unwrap_or_default() == Paint::Own && materials.any(FlatMaterial::is_textured) {
         materials.look_up(simd, frame, hits, surfaces, &mut color, &mut emission);
     }
     let opacity = materials.triple(simd, Row::Opacity);
@@ -191,21 +249,47 @@ fn shade_surfaces<S: Simd>(
         queue.push_lanes(reaching, &ShadowPacket::<S> { origin, direction, gain, distance, sample, source });
     }
 
+    if paint.is_none() {
+        follow(simd, frame, level, at, hits, incoming, surfaces, &view, materials, color, worker);
+    }
+}
+
+/// Appends the rays that follow from a packet's hits.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what is known of one packet, some of it at compile time")]
+fn follow<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    level: u32,
+    at: usize,
+    hits: &Hits<'_>,
+    incoming: &Incoming<S>,
+    surfaces: &Surfaces<S>,
+    view: &View<S>,
+    materials: &impl Materials<S>,
+    color: V3<S::f32s>,
+    worker: &mut Worker,
+) {
     if level < frame.plan.depth
         && (frame.plan.reflections || frame.plan.refractions)
         && materials.any(|material| material.secondary)
     {
+        let lanes = at..at + S::f32s::LEN;
+        let Worker { rays, mirrored, refracted, media, stats, .. } = worker;
+        let primitives = S::u32s::from_slice(simd, hits.primitives);
+        let flat = Mask::<S>::from_bitmask(simd, surfaces.flat);
+        let active = Mask::<S>::from_bitmask(simd, hits.active);
         let incident = Incident {
             spawning: active & materials.lanes(simd, |material| material.secondary),
-            direction,
-            position: lit.position,
-            facing: lit.facing,
-            margin: lit.margin,
-            normal: lit.normal,
+            direction: incoming.direction,
+            position: surfaces.point.position,
+            facing: view.facing,
+            margin: leave::margin::<S>(surfaces.point.scale),
+            normal: view.normal,
             from_behind: view.from_behind,
             color,
-            weight,
-            sample,
+            weight: incoming.weight,
+            sample: S::u32s::from_slice(simd, &rays.sample[lanes.clone()]),
             media: S::u32s::from_slice(simd, &rays.media[lanes]),
             flat: flat.select(primitives, S::u32s::splat(simd, NO_PRIMITIVE)),
         };

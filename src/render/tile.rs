@@ -37,6 +37,13 @@ pub struct Worker {
     pub(super) cells: visibility::Cells,
     pub(super) order: visibility::Order,
     pub(super) levels: Option<Box<visibility::Levels>>,
+    pub(super) smooth: visibility::Smooth,
+    /// In which colour the points of patches are shaded, while they are.
+    pub(super) paint: Option<shade::Paint>,
+    /// Set of the tile's cells whose pixels have the local light of what their eye rays hit.
+    pub(super) lit_cells: u64,
+    /// Set of the tile's cells of which one primitive was proven to be all that is seen.
+    pub(super) certain_cells: u64,
     pub(super) lists: Option<Box<Lists>>,
     /// Queues whose turn has not come, the next one last.
     waiting: Vec<Waiting>,
@@ -126,6 +133,7 @@ impl Worker {
         self.shadows.resize_with(frame.lights.len(), ShadowQueue::default);
         self.shadow_scratch.begin_tile(frame.lights.len());
         self.color.prepare();
+        self.lit_cells = 0;
         self.seen.resize(SAMPLES, Seen::NOTHING);
     }
 

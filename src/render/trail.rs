@@ -61,7 +61,9 @@ mod tests {
     #[test]
     fn what_was_met_counts_and_its_order_does_not() {
         let mut trails = Trails(vec![0; 4]);
-        for (sample, met) in [vec![[0, 1], [2, 7]], vec![[2, 7], [0, 1]], vec![[2, 1], [0, 7]], vec![[0, 1]]].iter().enumerate() {
+        for (sample, met) in
+            [vec![[0, 1], [2, 7]], vec![[2, 7], [0, 1]], vec![[2, 1], [0, 7]], vec![[0, 1]]].iter().enumerate()
+        {
             for &thing in met {
                 trails.note(sample as u32, thing);
             }

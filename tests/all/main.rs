@@ -7,6 +7,7 @@ mod determinism;
 mod exactness;
 mod flat_mirrors;
 mod imports;
+mod interpolation;
 mod our_scenes;
 mod overlay;
 mod picture_bits;

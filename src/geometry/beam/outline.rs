@@ -28,6 +28,13 @@ pub trait Outline<const N: usize, const M: usize>: Kernel<N> {
         F::Mask::splat(rays.x.token(), false)
     }
 
+    /// Whether surely none of the rays hits, nor any between them: any whose q is a mean of theirs. All must end, or
+    /// begin, on one plane.
+    #[inline(always)]
+    fn lies_beside<S: Simd, F: Lanes<S>>(_outline: &[F; M], _rays: &Points<F>) -> bool {
+        false
+    }
+
     /// An upper bound of the nearness of hits, as a product with q.
     fn nearest<S: Simd, F: Lanes<S>>(outline: &[F; M]) -> [F; 3];
 
@@ -219,6 +226,20 @@ impl Outline<10, TRIANGLE> for Triangle {
         let [_, _, _, _, nx, ny, nz, _, _, _, px, py, pz, qx, qy, qz, rx, ry, rz] = *outline;
         let least = rays.value(px, py, pz).min(rays.value(qx, qy, qz)).min(rays.value(rx, ry, rz));
         least.simd_lt(-2.0) | rays.is_too_deep([nx, ny, nz], limit)
+    }
+
+    #[inline(always)]
+    fn lies_beside<S: Simd, F: Lanes<S>>(outline: &[F; TRIANGLE], rays: &Points<F>) -> bool {
+        // One side has all rays outside, and then all between them: sides are linear in q, and so is what 1 / depth is on
+        // a plane.
+        let [_, _, _, _, nx, ny, nz, _, _, _, px, py, pz, qx, qy, qz, rx, ry, rz] = *outline;
+        let is_outside = [
+            rays.value(px, py, pz).simd_lt(-2.0),
+            rays.value(qx, qy, qz).simd_lt(-2.0),
+            rays.value(rx, ry, rz).simd_lt(-2.0),
+            rays.is_too_deep([nx, ny, nz], F::splat(nx.token(), f32::INFINITY)),
+        ];
+        is_outside[0].all_true() || is_outside[1].all_true() || is_outside[2].all_true() || is_outside[3].all_true()
     }
 
     #[inline(always)]

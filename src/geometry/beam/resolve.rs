@@ -5,8 +5,8 @@ use super::outline::Outline;
 use super::projection::Points;
 use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use crate::geometry::traverse::test_place;
-use crate::geometry::{Rays, Search, Visitor};
-use crate::math::V3;
+use crate::geometry::{PrimitiveIndex, Rays, Search, Visitor};
+use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -55,6 +55,24 @@ macro_rules! define_resolve {
         }
 
         impl Candidates {
+            /// Whether, by the look of their outlines, no ray can hit any candidate but the one that all of them leave,
+            /// nor can any between the rays.
+            #[inline(always)]
+            pub fn lie_beside<S: Simd, F: Lanes<S>>(
+                &self,
+                simd: S,
+                points: &Points<F>,
+                source: PrimitiveIndex,
+            ) -> bool {
+                $(for at in 0..self.$blocks.len() {
+                    let outline: [F; $outline] = self.$blocks.outline(simd, at);
+                    if self.$blocks.member(at).index != source && !$kernel::lies_beside(&outline, points) {
+                        return false;
+                    }
+                })+
+                true
+            }
+
             /// Whether, by the look of their outlines, no ray can hit any candidate that matters to `visitor`.
             #[inline(always)]
             pub fn are_passed_by<S: Simd, V: Visitor<S>>(

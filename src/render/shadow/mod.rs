@@ -1,6 +1,7 @@
 //! Shadow rays: which of a tile's light contributions arrive, and in what colour.
 
 mod crossing;
+mod settle;
 mod verdict;
 
 use super::extent::{FEW, Lists, parts};
@@ -15,6 +16,7 @@ use crate::math::V3;
 use crossing::{Flight, transmittance};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+pub(super) use settle::settle;
 use std::ops::Range;
 use std::time::Instant;
 use verdict::{Judge, Verdict};
@@ -91,6 +93,9 @@ fn resolve_light<S: Simd>(simd: S, frame: &Frame<'_>, light: usize, queue: &mut 
     worker.lists = Some(lists);
 }
 
+/// Fewer rays are not worth a beam.
+const LEAST_RAYS: usize = 48;
+
 /// Resolves shadow rays of one light that start close together.
 fn resolve_run<S: Simd>(
     simd: S,
@@ -102,7 +107,11 @@ fn resolve_run<S: Simd>(
 ) {
     let Lists { whole, part } = lists;
     let start = Instant::now();
-    let judge = Judge::new(simd, frame, rays.search, frame.lights[rays.light].kind, rays.queue, range.clone());
+    let judge = if range.len() < LEAST_RAYS {
+        None
+    } else {
+        Judge::new(simd, frame, rays.search, frame.lights[rays.light].kind, rays.queue, range.clone(), 0.0)
+    };
     let verdict = match &judge {
         Some(judge) => judge.judge(simd, whole, &mut worker.stack),
         None => Verdict::Unknown,
@@ -206,7 +215,7 @@ fn trace_rays<S: Simd>(
                 let mut visitor = AnyHit::new(simd, distance, sources, opaque);
                 let mut occluders = Occluders { search, listed: None };
                 if let Some(Suspects { candidates, judge }) = suspects {
-                    let points = judge.points::<S>(origin);
+                    let points = judge.points(origin);
                     if candidates.are_passed_by(simd, &points, &visitor) {
                         stats.certificates.lit += u64::from(present.count_ones());
                         color.add(simd, &queue.sample[lanes], present, gain);

@@ -2,7 +2,7 @@
 
 use crate::geometry::beam::{Beam, Blocking, Candidates, Cover, Points, Projection};
 use crate::geometry::{NO_PRIMITIVE, Opaque, PrimitiveIndex, Search, Stack};
-use crate::math::V3;
+use crate::math::{Lanes, V3};
 use crate::render::extent::Extent;
 use crate::render::frame::Frame;
 use crate::render::queue::ShadowQueue;
@@ -25,9 +25,6 @@ pub(super) enum Verdict {
     Unknown,
 }
 
-/// Fewer rays are not worth a beam.
-const LEAST_RAYS: usize = 48;
-
 /// More candidates are not worth testing one by one.
 const MOST_CANDIDATES: usize = 64;
 
@@ -47,10 +44,12 @@ pub(super) struct Judge<'a> {
     /// The one primitive that all rays leave and cannot come back to.
     source: PrimitiveIndex,
     extent: Extent,
+    /// How far beyond the rays the beam goes, as a share of their extent.
+    bulge: f32,
 }
 
 impl<'a> Judge<'a> {
-    /// A judge of the shadow rays in `range` of a light's queue; `None` if they are too few or too far apart.
+    /// A judge of the shadow rays in `range` of a light's queue; `None` if they are too far apart.
     pub fn new<S: Simd>(
         simd: S,
         frame: &'a Frame<'_>,
@@ -58,10 +57,8 @@ impl<'a> Judge<'a> {
         light: LightKind,
         queue: &ShadowQueue,
         range: Range<usize>,
+        bulge: f32,
     ) -> Option<Self> {
-        if range.len() < LEAST_RAYS {
-            return None;
-        }
         let middle = queue.origin.get(range.start + range.len() / 2);
         let (apex, forward, parallel) = match light {
             LightKind::Point { position } | LightKind::Spot { position, .. } => (position, middle - position, false),
@@ -71,7 +68,8 @@ impl<'a> Judge<'a> {
         let right = forward.any_orthonormal_vector();
         let axes = [right, right.cross(forward), forward];
         let extent =
-            Extent::of(simd, &Projection::new(apex, axes, parallel, 0.0, 0.0), &queue.origin, None, range.clone())?;
+            Extent::of(simd, &Projection::new(apex, axes, parallel, 0.0, 0.0), &queue.origin, None, range.clone())?
+                .widened(bulge);
         let reach = search.geometry.reach().max(extent.reach);
         let projection = Projection::new(apex, axes, parallel, reach, frame.beam_margin);
         let slack = projection.slack;
@@ -85,7 +83,7 @@ impl<'a> Judge<'a> {
             .unwrap_or([0.0, 0.0, nearness(&projection, extent.z[1] + 4.0 * slack)]);
         let receiver = Cover::new(&projection, behind);
         let (opaque, source) = (frame.tables.opaque(), source.unwrap_or(NO_PRIMITIVE));
-        Some(Self { search, opaque, projection, receiver, source, extent })
+        Some(Self { search, opaque, projection, receiver, source, extent, bulge })
     }
 
     /// Judges all of the rays, leaving what can be in their way in `candidates`.
@@ -107,13 +105,13 @@ impl<'a> Judge<'a> {
         let Some(extent) = Extent::of(simd, &self.projection, &queue.origin, None, part) else {
             return Verdict::Unknown;
         };
-        own.filter(simd, candidates, &self.beam(&extent));
+        own.filter(simd, candidates, &self.beam(&extent.widened(self.bulge)));
         Verdict::of(own)
     }
 
     /// Rays to the given starts, as the light sees them.
     #[inline(always)]
-    pub fn points<S: Simd>(&self, starts: V3<S::f32s>) -> Points<S::f32s> {
+    pub fn points<S: Simd, F: Lanes<S>>(&self, starts: V3<F>) -> Points<F> {
         Points::to(&self.projection, starts)
     }
 

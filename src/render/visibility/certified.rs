@@ -15,6 +15,7 @@ use crate::render::tile::milliseconds_since;
 use crate::render::trace;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use std::ops::Range;
 use std::time::Instant;
 
 /// Candidates of a block, of one of its quarters, and of the cells of that one.
@@ -38,6 +39,7 @@ pub(super) fn find<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mu
     let start = Instant::now();
     queue_tile(simd, frame, pass, worker);
     worker.rays.pad();
+    worker.certain_cells = 0;
     worker.stats.stages_ms.visibility += milliseconds_since(start);
     let mut levels = worker.levels.take().unwrap_or_default();
     for block in 0..worker.order.blocks.len() {
@@ -64,7 +66,7 @@ fn find_block<S: Simd>(
     worker.stats.stages_ms.certificate += milliseconds_since(start);
     if listed && levels.block.len() <= 1 {
         let start = Instant::now();
-        resolve_area(simd, frame, &search, &levels.block, area, worker);
+        resolve_area(simd, frame, &search, &levels.block, area, 16 * block..16 * block + 16, worker);
         worker.stats.stages_ms.visibility += milliseconds_since(start);
         return;
     }
@@ -100,7 +102,7 @@ fn find_quarter<S: Simd>(
     if complete && own.len() <= 1 {
         worker.stats.stages_ms.certificate += milliseconds_since(start);
         let start = Instant::now();
-        resolve_area(simd, frame, &search, own, area, worker);
+        resolve_area(simd, frame, &search, own, area, 4 * quarter..4 * quarter + 4, worker);
         worker.stats.stages_ms.visibility += milliseconds_since(start);
         return;
     }
@@ -128,7 +130,7 @@ fn find_quarter<S: Simd>(
             trace::primary_range(simd, frame, area.start..area.start + area.pixels(), worker);
             worker.stats.pixels.traced += area.pixels() as u64;
         } else {
-            resolve_area(simd, frame, &search, cell, area, worker);
+            resolve_area(simd, frame, &search, cell, area, at..at + 1, worker);
         }
     }
     worker.stats.stages_ms.visibility += milliseconds_since(start);
@@ -147,16 +149,17 @@ fn beam<'a>(frame: &'a Frame<'_>, pass: &Pass, area: Area) -> Beam<'a> {
     Beam::new(&frame.projection, x, y).beyond(camera.near)
 }
 
-/// Tests an area's rays against all that they can meet.
+/// Tests the rays of an area, of which `cells` are all, against what they can meet.
 fn resolve_area<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     search: &Search<'_>,
     candidates: &Candidates,
     area: Area,
+    cells: Range<usize>,
     worker: &mut Worker,
 ) {
-    let Worker { rays, stats, .. } = worker;
+    let Worker { rays, stats, certain_cells, .. } = worker;
     let pixels = area.pixels();
     simd.vectorize(
         #[inline(always)]
@@ -174,6 +177,9 @@ fn resolve_area<S: Simd>(
     );
     if candidates.is_certain() {
         stats.pixels.certified += pixels as u64;
+        for cell in cells {
+            *certain_cells |= 1 << cell;
+        }
     } else {
         stats.pixels.resolved += pixels as u64;
         let seen = &rays.primitive[area.start..area.start + pixels];

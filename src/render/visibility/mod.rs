@@ -3,16 +3,19 @@
 mod certified;
 mod full;
 mod order;
+mod smooth;
 mod subsample;
 
 pub use certified::Levels;
 pub use order::Order;
+pub(super) use smooth::POINTS;
+pub use smooth::Smooth;
 pub use subsample::Cells;
 
 use super::frame::Frame;
 use super::tile::{Pass, Seen, Worker, milliseconds_since};
 use super::trace;
-use crate::settings::Visibility;
+use crate::settings::{Fill, Visibility};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use std::time::Instant;
@@ -20,6 +23,7 @@ use std::time::Instant;
 /// Fills in the colours and what is seen, for all samples of a pass.
 pub(super) fn render_pass<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
     match frame.settings.visibility {
+        Visibility::Certified if frame.settings.fill == Fill::Color => smooth::render(simd, frame, pass, worker),
         Visibility::Certified => certified::render(simd, frame, pass, worker),
         Visibility::Full => full::render(simd, frame, pass, worker),
         Visibility::Subsample => subsample::render(simd, frame, pass, worker),

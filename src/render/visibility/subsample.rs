@@ -145,7 +145,8 @@ fn fill_colors<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, cells: &mut Cel
         cells.next.clear();
         for cell in &cells.current {
             if corners_match(cell, worker, frame.settings.match_threshold) {
-                worker.stats.pixels.interpolated += interpolate(cell, pass, &mut cells.done, worker, frame.keeps_planes);
+                worker.stats.pixels.interpolated +=
+                    interpolate(cell, pass, &mut cells.done, worker, frame.keeps_planes);
             } else {
                 Cells::split(&mut cells.next, cell);
             }
@@ -183,13 +184,7 @@ fn colors_match(cell: &Cell, color: &Colors, threshold: f32) -> bool {
 }
 
 /// Interpolates between the corners of a cell; returns how many of the tile's pixels it filled.
-fn interpolate(
-    cell: &Cell,
-    pass: &Pass,
-    done: &mut [bool],
-    worker: &mut Worker,
-    keeps_planes: bool,
-) -> u64 {
+fn interpolate(cell: &Cell, pass: &Pass, done: &mut [bool], worker: &mut Worker, keeps_planes: bool) -> u64 {
     let Worker { color, seen, trails, .. } = worker;
     let corners = cell.corners().map(|[x, y]| sample_at(x.into(), y.into()) as usize);
     let colors = corners.map(|corner| color.get(corner));
