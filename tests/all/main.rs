@@ -1,4 +1,4 @@
-//! All integration tests, in one binary: one module a subject.
+//! Integration tests, in one binary: one module a subject. What breaks methods by design is in `stability.rs`.
 
 mod adversary;
 mod blit;
@@ -6,10 +6,14 @@ mod cli;
 mod determinism;
 mod exactness;
 mod flat_mirrors;
+#[path = "../common/flips.rs"]
+mod flips;
 mod imports;
 mod our_scenes;
 mod overlay;
+#[path = "../common/picture_bits.rs"]
 mod picture_bits;
+#[path = "../common/random.rs"]
 mod random;
 mod readme;
 mod reference;
@@ -19,3 +23,5 @@ mod scene_loading;
 mod stress;
 mod subsampling;
 mod temporary;
+#[path = "../common/tracer/mod.rs"]
+mod tracer;
