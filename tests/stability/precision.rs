@@ -22,8 +22,8 @@ const AWAY: i32 = 2;
 /// all cameras, and why.
 const BEYOND: [(&str, f64, &str); 3] = [
     ("coincident", 0.11, "of faces in the same place, rounding decides which is in front"),
-    ("eye_on_face", 15.0, "a face that holds the eye is at distance zero but for rounding, and so is seen by chance"),
-    ("far_spheres", 3.0, "from 10,000 radii on, directions in single precision are coarser than pixels"),
+    ("eye_on_face", 6.76, "a face that holds the eye is at distance zero but for rounding, and so is seen by chance"),
+    ("far_spheres", 3.3, "from 10,000 radii on, directions in single precision are coarser than pixels"),
 ];
 
 /// Looking at many things in double precision takes its time.
