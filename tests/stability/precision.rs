@@ -20,9 +20,8 @@ const AWAY: i32 = 2;
 
 /// Where single precision does not suffice even there: the scene, per cent of its pixels away from edges that differ over
 /// all cameras, and why.
-const BEYOND: [(&str, f64, &str); 3] = [
+const BEYOND: [(&str, f64, &str); 2] = [
     ("coincident", 0.11, "of faces in the same place, rounding decides which is in front"),
-    ("eye_on_face", 6.76, "a face that holds the eye is at distance zero but for rounding, and so is seen by chance"),
     ("far_spheres", 3.3, "from 10,000 radii on, directions in single precision are coarser than pixels"),
 ];
 
