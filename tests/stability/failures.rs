@@ -52,5 +52,6 @@ fn every_method_fails_as_often_as_its_rate_says() {
     for (name, _) in RATES {
         assert!(scenes.iter().any(|stress| stress.name == *name), "{name} has a row and no file");
     }
+    println!("{table}");
     assert!(problems.is_empty(), "{}\nThe table as it is now:\n{table}", problems.join("\n"));
 }

@@ -2,8 +2,11 @@
 
 use raywalk::settings::{Fill, Settings, SphereCache, Visibility};
 
+/// A method by its name.
+type Method = (&'static str, fn() -> Settings);
+
 /// The columns: what is rendered and compared with `full`.
-pub const METHODS: [(&str, fn() -> Settings); 8] = [
+pub const METHODS: [Method; 8] = [
     ("hit 2", || subsample(Fill::Hit, 2)),
     ("hit 8", || subsample(Fill::Hit, 8)),
     ("hit 16", || subsample(Fill::Hit, 16)),
@@ -21,7 +24,7 @@ pub fn subsample(fill: Fill, stride: u32) -> Settings {
 
 /// Visibly wrong pixels in per cent: any channel of the 8-bit picture off by more than 2, over all cameras at 160x90.
 /// The last column is `full` against double precision: values off by more than a thousandth, over the file's cameras.
-/// A failing test prints the table as it is now.
+/// A failing test prints the table as it is now, `cargo test --release --test stability fails -- --nocapture` always.
 #[rustfmt::skip]
 pub const RATES: &[(&str, [f64; METHODS.len() + 1])] = &[
     //                               hit 2   hit 8  hit 16 color 2 color 8 balanced  fast  thesis  double

@@ -63,5 +63,6 @@ fn subsampling_loses_wires_and_certified_none() {
             Some(_) => {}
         }
     }
+    println!("{table}");
     assert!(problems.is_empty(), "{}\nThe table as it is now:\n{table}", problems.join("\n"));
 }
