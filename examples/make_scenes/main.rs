@@ -1,4 +1,4 @@
-//! Writes what in `scenes/` is computed rather than typed: the textures and the sphereflake.
+//! Writes what in `scenes/` is computed rather than typed: the textures, the sphereflake and the tiny spheres.
 //!
 //! `cargo run --release --example make_scenes [FOLDER]` (default `scenes`) writes the same bytes on every machine:
 //! the noise is a hash of whole numbers, and the functions that differ between systems come from `libm`.
@@ -8,6 +8,7 @@ mod noise;
 mod paintings;
 mod sphereflake;
 mod surfaces;
+mod tiny_spheres;
 
 use anyhow::Context;
 use canvas::Paint;
@@ -40,7 +41,14 @@ fn main() -> anyhow::Result<()> {
         let file = textures.join(name).with_extension("png");
         canvas::picture(edge, paint).save(&file).with_context(|| format!("cannot write {}", file.display()))?;
     }
-    let file = folder.join("sphereflake.json");
-    std::fs::write(&file, sphereflake::scene(sphereflake::GENERATIONS))
-        .with_context(|| format!("cannot write {}", file.display()))
+    let stress = folder.join("stress");
+    std::fs::create_dir_all(&stress).with_context(|| format!("cannot make {}", stress.display()))?;
+    let written = [
+        (folder.join("sphereflake.json"), sphereflake::scene(sphereflake::GENERATIONS)),
+        (stress.join("tiny_spheres.json"), tiny_spheres::scene()),
+    ];
+    for (file, text) in written {
+        std::fs::write(&file, text).with_context(|| format!("cannot write {}", file.display()))?;
+    }
+    Ok(())
 }

@@ -1,43 +1,15 @@
 //! "Same pixels": every value of a setting that promises it gives every bit of every plane.
 
+use crate::flips::flipped;
 use crate::picture_bits::{PictureBits, render};
 use crate::random::Random;
 use crate::stress;
-use raywalk::math::simd::is_available;
 use raywalk::scene::{Camera, LoadOptions, Scene, load};
-use raywalk::settings::{Kind, Promise, ROWS, Row, Settings};
+use raywalk::settings::Settings;
 use std::path::Path;
 
 /// Neither a multiple of a tile nor of a packet.
 const SIZE: (u32, u32) = (97, 66);
-
-/// The values of a row that promise the default's pixels, but for the default itself.
-pub fn same_pixels(row: &Row) -> Vec<&'static str> {
-    match &row.kind {
-        Kind::Choice(choices) => {
-            let default = (row.get)(&Settings::exact());
-            let same = choices.iter().filter(|c| c.promise == Promise::SamePixels && c.value != default);
-            same.map(|c| c.value).collect()
-        }
-        Kind::Number { promise: Promise::SamePixels, .. } => vec!["1", "2", "5"],
-        Kind::Number { .. } => Vec::new(),
-    }
-}
-
-/// The default with one row flipped, each in turn. What the machine lacks is left out.
-pub fn flipped() -> Vec<(String, Settings)> {
-    let mut all = Vec::new();
-    for row in ROWS {
-        for value in same_pixels(row) {
-            let mut settings = Settings::exact();
-            (row.set)(&mut settings, value).unwrap();
-            if is_available(settings.simd) {
-                all.push((format!("{} {value}", row.name), settings));
-            }
-        }
-    }
-    all
-}
 
 fn wrong_pixels(name: &str, scene: &Scene, cameras: &[Camera]) -> Vec<String> {
     let mut wrong = Vec::new();

@@ -1,4 +1,4 @@
-//! All integration tests, in one binary: one module a subject.
+//! Integration tests, in one binary: one module a subject. What breaks methods by design is in `stability.rs`.
 
 mod adversary;
 mod blit;
@@ -6,11 +6,15 @@ mod cli;
 mod determinism;
 mod exactness;
 mod flat_mirrors;
+#[path = "../common/flips.rs"]
+mod flips;
 mod imports;
 mod interpolation;
 mod our_scenes;
 mod overlay;
+#[path = "../common/picture_bits.rs"]
 mod picture_bits;
+#[path = "../common/random.rs"]
 mod random;
 mod readme;
 mod reference;
@@ -20,3 +24,5 @@ mod scene_loading;
 mod stress;
 mod subsampling;
 mod temporary;
+#[path = "../common/tracer/mod.rs"]
+mod tracer;

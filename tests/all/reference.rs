@@ -4,17 +4,14 @@
 //! pixel's centre that f32 may see the other side of it; how many pixels that concerns is bounded.
 
 mod scenes;
-mod shapes;
-mod surface_color;
-mod tracer;
 
 use crate::picture_bits::render;
 use crate::stress;
 use crate::temporary::{Folder, load_text};
+use crate::tracer::{Seen, Tracer};
 use glam::{DVec2, DVec3, Vec3};
 use raywalk::scene::{Camera, LoadOptions, Scene};
 use raywalk::settings::{Settings, Visibility};
-use tracer::{Seen, Tracer};
 
 const SIZE: (u32, u32) = (64, 48);
 /// How far linear colours may be apart, in parts of the larger of 1 and the colour.

@@ -13,6 +13,9 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::Vec3;
 
+/// Half a unit in the last place.
+const ROUNDING: f32 = 1.0 / (1 << 24) as f32;
+
 /// The triangle kernel. Fields: three corners in ascending order, then +1, or -1 where sorting turned the winding.
 #[derive(Debug)]
 pub struct Triangle;
@@ -99,6 +102,21 @@ impl Triangle {
         (to_min.min(to_max), to_min.max(to_max))
     }
 
+    /// Whether a point lies in the plane of the corners, as far as its coordinates and the arithmetic can tell. A ray from
+    /// there would hit or not by the rounding of a distance of zero, and an eye on a wall would see noise.
+    #[inline(always)]
+    fn holds<S: Simd, F: Lanes<S>>(corners: &[V3<F>; 3], point: V3<F>) -> F::Mask {
+        let [a, b, c] = *corners;
+        let (normal, from) = ((b - a).cross(c - a), a - point);
+        let [x, y, z] = [normal.x * from.x, normal.y * from.y, normal.z * from.z];
+        // Axis by axis: the size of a large floor says nothing about the height above it.
+        let terms = x.abs() + y.abs() + z.abs();
+        let own = (normal.x * point.x).abs() + (normal.y * point.y).abs() + (normal.z * point.z).abs();
+        let in_plane = (x + y + z).abs().simd_le((terms * 8.0 + own) * ROUNDING);
+        // Areas that leave the range of f32 tell nothing.
+        in_plane & largest(normal).simd_gt(0.0)
+    }
+
     /// Unit normal by the winding of the corners. A needle that rounding leaves without one gets one that faces the ray.
     #[inline(always)]
     fn normal<S: Simd, F: Lanes<S>>([a, b, c]: [V3<F>; 3], winding: F, direction: V3<F>) -> V3<F> {
@@ -165,7 +183,12 @@ impl Kernel<10> for Triangle {
         let (near, far) = Self::box_interval(&corners, rays);
         let t = t.simd_lt(near).select(near, t);
         let t = t.simd_gt(far).select(far, t);
-        (inside & near.simd_le(far) & t.simd_gt(t_min), t)
+        let hit = inside & near.simd_le(far) & t.simd_gt(t_min);
+        let starts_in_box = hit & near.simd_le(zero);
+        if starts_in_box.any_true() {
+            return (hit & !(starts_in_box & Self::holds(&corners, rays.origin)), t);
+        }
+        (hit, t)
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! The comparison: brute force against everything that promises its pixels.
 
-use crate::exactness::same_pixels;
+use crate::flips::{flipped, same_pixels};
 use crate::picture_bits::{PictureBits, film};
 use crate::random::Random;
 use crate::temporary::load_text;
@@ -115,7 +115,7 @@ pub fn candidates(random: &mut Random) -> Vec<Named> {
 
 /// Every candidate that a kept scene is rendered with.
 pub fn all_candidates() -> Vec<Named> {
-    let mut all = crate::exactness::flipped();
+    let mut all = flipped();
     all.push(("exact".to_owned(), Settings::exact()));
     let finer = Settings { supersample: Supersample::Grid { side: 2 }, ..Settings::exact() };
     all.push(("--supersample 4".to_owned(), finer));

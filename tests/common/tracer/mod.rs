@@ -1,18 +1,21 @@
 //! Whitted's tracer (CACM 23(6), 1980) as the contract words it: recursive, scalar, in double precision, with no
 //! acceleration. Slow and plain, so that it can be read beside the words.
 
-use super::shapes::{Primitive, Surface, primitives};
-use super::surface_color::look_up;
+mod shapes;
+mod surface_color;
+
 use glam::{DVec2, DVec3};
 use raywalk::scene::light::{Falloff, LightKind};
 use raywalk::scene::material::Model;
 use raywalk::scene::{Camera, Light, Material, Scene};
 use raywalk::settings::Settings;
+use shapes::{Primitive, Surface, primitives};
+use surface_color::look_up;
 
-/// Rays start this far off the surface that they leave, in units of a scene that is about 10 large: on the viewer's side,
-/// or on the other one if they are refracted. Towards a light behind it, the surface itself is in the way, even where its
-/// shading normal leans towards the light.
-const MARGIN: f64 = 1e-8;
+/// Rays start this far off the surface that they leave, in parts of the scene's size: on the viewer's side, or on the
+/// other one if they are refracted. Towards a light behind it, the surface itself is in the way, even where its shading
+/// normal leans towards the light.
+const MARGIN: f64 = 1e-9;
 
 pub struct Tracer<'a> {
     scene: &'a Scene,
@@ -20,6 +23,7 @@ pub struct Tracer<'a> {
     lights: Vec<Light>,
     primitives: Vec<Primitive>,
     depth: u32,
+    margin: f64,
 }
 
 /// What a pixel shows, and a number that changes wherever its path meets something else.
@@ -38,9 +42,9 @@ struct Ray {
 }
 
 impl Ray {
-    /// A ray that leaves a surface on the side of `side`.
-    fn leaving(position: DVec3, side: DVec3, direction: DVec3) -> Self {
-        Self { origin: position + side * MARGIN, direction: direction.normalize(), range: (0.0, f64::INFINITY) }
+    /// A ray that leaves a surface.
+    fn leaving(origin: DVec3, direction: DVec3) -> Self {
+        Self { origin, direction: direction.normalize(), range: (0.0, f64::INFINITY) }
     }
 }
 
@@ -57,7 +61,9 @@ impl<'a> Tracer<'a> {
             lights.push(Light { name: None, kind, color: glam::Vec3::ONE, falloff: Falloff::None });
         }
         let depth = settings.depth.unwrap_or(scene.render.max_depth);
-        Self { scene, camera, lights, primitives: primitives(&scene.geometry), depth }
+        let bounds = scene.bounds();
+        let size = if bounds.is_empty() { 10.0 } else { bounds.size().max_element().into() };
+        Self { scene, camera, lights, primitives: primitives(&scene.geometry), depth, margin: MARGIN * size }
     }
 
     /// What is seen at a point of a picture, in pixels from its upper left corner.
@@ -168,7 +174,7 @@ impl<'a> Tracer<'a> {
         }
         let mut out = local;
         if reflected != DVec3::ZERO {
-            let ray = Ray::leaving(surface.position, surface.geometric, mirrored);
+            let ray = Ray::leaving(surface.position + surface.geometric * self.margin, mirrored);
             out += reflected * self.trace(ray, rays_left - 1, media, path);
         }
         if let Some(direction) = bent.filter(|_| refracted != DVec3::ZERO) {
@@ -177,7 +183,7 @@ impl<'a> Tracer<'a> {
                 (true, true) => [media, &[hit.object]].concat(),
                 (true, false) => without,
             };
-            let ray = Ray::leaving(surface.position, -surface.geometric, direction);
+            let ray = Ray::leaving(surface.position - surface.geometric * self.margin, direction);
             out += refracted * color * self.trace(ray, rays_left - 1, &media, path);
         }
         out
@@ -215,7 +221,7 @@ impl<'a> Tracer<'a> {
             if light.falloff == Falloff::InverseSquare && distance.is_finite() {
                 arriving /= distance * distance;
             }
-            arriving *= self.visible(surface.position + surface.geometric * MARGIN, to_light, distance, path);
+            arriving *= self.visible(surface.position + surface.geometric * self.margin, to_light, distance, path);
             let h = (to_light + viewer).normalize();
             out += arriving
                 * match material.model {
@@ -237,7 +243,7 @@ impl<'a> Tracer<'a> {
         let mut arriving = DVec3::ONE;
         for primitive in &self.primitives {
             for t in primitive.hits(from, to_light) {
-                if t <= 0.0 || t >= distance - MARGIN {
+                if t <= 0.0 || t >= distance - self.margin {
                     continue;
                 }
                 let (object, material) =

@@ -75,8 +75,12 @@ impl Primitive {
     pub fn hits(&self, origin: DVec3, direction: DVec3) -> Vec<f64> {
         match self.shape {
             Shape::Sphere { center, radius } => {
-                let (to, b) = (center - origin, (center - origin).dot(direction));
-                quadratic(1.0, -b, to.length_squared() - radius * radius)
+                // By the point of the ray nearest to the centre: from a million radii away, squared distances would leave
+                // nothing of the radius (Haines, Günther and Akenine-Möller, Ray Tracing Gems, chapter 7, 2019).
+                let nearest = (center - origin).dot(direction);
+                let across = origin + direction * nearest - center;
+                let squared = radius * radius - across.length_squared();
+                if squared < 0.0 { Vec::new() } else { vec![nearest - squared.sqrt(), nearest + squared.sqrt()] }
             }
             Shape::Triangle { corners: [a, b, c], .. } => {
                 let (ab, ac) = (b - a, c - a);
