@@ -40,6 +40,8 @@ pub struct Worker {
     /// Empty queues, for their memory.
     spare: Vec<RayQueue>,
     sums: Colors,
+    /// Pixels of a tile that are to have more samples, by the samples of their centres.
+    pub(super) refined: Vec<u32>,
     /// What the pixels' centres see, while other samples of a grid are seen.
     seen_at_centres: Vec<Seen>,
 }
@@ -99,6 +101,11 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, tile: &mut FilmTile, w
         Supersample::Off => {
             visibility::render_pass(simd, frame, &centre, worker);
             std::mem::swap(&mut tile.color, &mut worker.color);
+        }
+        Supersample::Adaptive => {
+            visibility::render_pass(simd, frame, &centre, worker);
+            std::mem::swap(&mut tile.color, &mut worker.color);
+            tile.store_objects(frame, &worker.seen);
         }
         Supersample::Grid { side } => {
             if tile.keeps_planes() {

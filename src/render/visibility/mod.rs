@@ -2,10 +2,13 @@
 
 mod certified;
 mod full;
+mod grids;
 mod order;
 mod subsample;
 
 pub use certified::Levels;
+pub(super) use grids::render_grids;
+pub use grids::{GRID, GRID_SIDE};
 pub use order::Order;
 pub use subsample::Cells;
 
