@@ -104,7 +104,8 @@ fn cross_borders(tiles: &mut [FilmTile], tiles_across: usize) -> bool {
                 any |= tiles[neighbour].refinement.want_column(column, pixels);
             }
         }
-        for (row, pixels, neighbour) in [(TILE - 1, above, at.wrapping_sub(tiles_across)), (0, below, at + tiles_across)]
+        for (row, pixels, neighbour) in
+            [(TILE - 1, above, at.wrapping_sub(tiles_across)), (0, below, at + tiles_across)]
         {
             if pixels != 0 {
                 any |= tiles[neighbour].refinement.want_row(row, pixels);
@@ -123,6 +124,8 @@ fn refine_tile<S: Simd>(
     tile: &mut FilmTile,
     worker: &mut Worker,
 ) {
+    // Perhaps the worker's first tile of the frame.
+    worker.begin_tile(frame);
     let start = Instant::now();
     if first {
         tile.refinement.begin(simd, centres, [tile.x, tile.y], [tile.width, tile.height]);
@@ -189,13 +192,7 @@ impl Refinement {
     }
 
     /// Begins anew: wants the pixels that differ from a neighbour.
-    fn begin<S: Simd>(
-        &mut self,
-        simd: S,
-        centres: &Centres<'_>,
-        [left, top]: [usize; 2],
-        [width, height]: [usize; 2],
-    ) {
+    fn begin<S: Simd>(&mut self, simd: S, centres: &Centres<'_>, [left, top]: [usize; 2], [width, height]: [usize; 2]) {
         (self.wanted, self.refined, self.beyond) = ([0; TILE], [0; TILE], [0; 4]);
         let inside = u64::MAX >> (TILE - width);
         simd.vectorize(
@@ -329,7 +326,8 @@ fn fill<T: Copy>(strip: &mut [T; TILE + 2], row: &[T], left: usize) {
 impl FilmTile {
     /// Keeps the objects that samples see.
     pub(super) fn store_objects(&mut self, frame: &Frame<'_>, seen: &[Seen]) {
-        let object_of = |primitive: u32| frame.scene.geometry.ids.get(primitive as usize).map_or(u32::MAX, |id| id.object);
+        let object_of =
+            |primitive: u32| frame.scene.geometry.ids.get(primitive as usize).map_or(u32::MAX, |id| id.object);
         self.refinement.objects.resize(self.width * self.height, u32::MAX);
         let (mut primitive, mut object) = (NO_PRIMITIVE, u32::MAX);
         for first in (0..TILE * TILE).step_by(PACKET) {

@@ -126,7 +126,8 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, tile: &mut FilmTile, w
 }
 
 impl Worker {
-    fn begin_tile(&mut self, frame: &Frame<'_>) {
+    /// Makes ready for a tile, and forgets what the last one left.
+    pub(super) fn begin_tile(&mut self, frame: &Frame<'_>) {
         self.shadows.resize_with(frame.lights.len(), ShadowQueue::default);
         self.shadow_scratch.begin_tile(frame.lights.len());
         self.color.prepare();
