@@ -75,10 +75,10 @@ pub(super) struct Centres<'a> {
     pub objects: &'a [u32],
 }
 
-/// Refines a picture of centres.
-pub(super) fn refine(token: SimdToken, frame: &Frame<'_>, pool: &Pool, film: &mut Film) {
-    film.assemble_objects(pool.threads.as_ref());
-    let (centres, tiles) = film.centres_and_tiles();
+/// Refines a picture of centres. `objects` is room for what they see.
+pub(super) fn refine(token: SimdToken, frame: &Frame<'_>, pool: &Pool, film: &mut Film, objects: &mut Vec<u32>) {
+    film.assemble_objects(objects, pool.threads.as_ref());
+    let (centres, tiles) = film.centres_and_tiles(objects);
     let tiles_across = centres.width.div_ceil(TILE);
     let mut first = true;
     loop {

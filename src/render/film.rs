@@ -107,8 +107,6 @@ pub struct Film {
     planes: Planes,
     pub(super) tiles: Vec<FilmTile>,
     rgba: Vec<u8>,
-    /// The objects that the pixels' centres see, row by row, where they are asked for.
-    objects: Vec<u32>,
 }
 
 impl Film {
@@ -118,7 +116,7 @@ impl Film {
         let (w, h) = (width as usize, height as usize);
         let starts = (0..h).step_by(TILE).flat_map(|y| (0..w).step_by(TILE).map(move |x| (x, y)));
         let tiles = starts.map(|(x, y)| FilmTile::new(x, y, TILE.min(w - x), TILE.min(h - y), planes)).collect();
-        Self { width, height, planes, tiles, rgba: vec![0; w * h * 4], objects: Vec::new() }
+        Self { width, height, planes, tiles, rgba: vec![0; w * h * 4] }
     }
 
     /// Width in pixels.
@@ -184,17 +182,17 @@ impl Film {
         assemble(pixels, self.width as usize, &self.tiles, threads, |tile| &tile.rgba);
     }
 
-    /// Copies the objects that the tiles' pixels see.
-    pub(super) fn assemble_objects(&mut self, threads: Option<&rayon::ThreadPool>) {
-        self.objects.resize(self.rgba.len() / 4, u32::MAX);
-        assemble(&mut self.objects, self.width as usize, &self.tiles, threads, |tile| tile.refinement.objects());
+    /// Copies the objects that the tiles' pixels see into `objects`, row by row.
+    pub(super) fn assemble_objects(&self, objects: &mut Vec<u32>, threads: Option<&rayon::ThreadPool>) {
+        objects.resize(self.rgba.len() / 4, u32::MAX);
+        assemble(objects, self.width as usize, &self.tiles, threads, |tile| tile.refinement.objects());
     }
 
-    /// The assembled picture, and the tiles.
-    pub(super) fn centres_and_tiles(&mut self) -> (Centres<'_>, &mut [FilmTile]) {
+    /// The assembled picture with the objects it shows, and the tiles.
+    pub(super) fn centres_and_tiles<'a>(&'a mut self, objects: &'a [u32]) -> (Centres<'a>, &'a mut [FilmTile]) {
         let (rgba, _) = self.rgba.as_chunks();
         let (width, height) = (self.width as usize, self.height as usize);
-        (Centres { width, height, rgba, objects: &self.objects }, &mut self.tiles)
+        (Centres { width, height, rgba, objects }, &mut self.tiles)
     }
 }
 

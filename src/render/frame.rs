@@ -53,6 +53,8 @@ pub struct Scratch {
     tables: Tables,
     sphere_terms: Vec<Block<4>>,
     around_eye: Vec<u32>,
+    /// The objects that the pixels' centres see, where samples are adaptive.
+    objects: Vec<u32>,
 }
 
 /// Worker threads and what each of them keeps from tile to tile.
@@ -118,6 +120,7 @@ impl Scratch {
             tables: Tables::default(),
             sphere_terms: Vec::new(),
             around_eye: Vec::new(),
+            objects: Vec::new(),
         }
     }
 }
@@ -170,7 +173,7 @@ pub fn render_frame(
 ) -> FrameStats {
     let start = Instant::now();
     let token = SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best);
-    let Scratch { cancel, beam_margin, pool, tables, sphere_terms, around_eye } = scratch;
+    let Scratch { cancel, beam_margin, pool, tables, sphere_terms, around_eye, objects } = scratch;
     if tables.generation != Some(scene.generation) {
         *tables = Tables::new(scene);
     }
@@ -223,7 +226,7 @@ pub fn render_frame(
     });
     film.assemble(pool.threads.as_ref());
     if settings.supersample == Supersample::Adaptive {
-        adaptive::refine(token, &frame, pool, film);
+        adaptive::refine(token, &frame, pool, film, objects);
     }
 
     let mut stats = FrameStats { completed: !cancel.is_cancelled(), ..FrameStats::default() };
