@@ -2,6 +2,7 @@
 //!
 //! Pixels are stored tile by tile, so that workers own disjoint tiles without locks or shared mutable memory.
 
+use super::adaptive::{Centres, Refinement};
 use super::resolve::Encoder;
 use super::samples::{Colors, PACKET, pixel_at, sample_at};
 use fearless_simd::Simd;
@@ -45,6 +46,7 @@ pub(super) struct FilmTile {
     pub normal: Vec<[f32; 3]>,
     pub object: Vec<u32>,
     pub primitive: Vec<u32>,
+    pub refinement: Refinement,
 }
 
 impl FilmTile {
@@ -62,6 +64,7 @@ impl FilmTile {
             normal: vec![[0.0; 3]; kept(planes.normal)],
             object: vec![u32::MAX; kept(planes.object)],
             primitive: vec![u32::MAX; kept(planes.primitive)],
+            refinement: Refinement::default(),
         }
     }
 
@@ -175,24 +178,45 @@ impl Film {
 
     /// Copies the tiles' encoded pixels into the row-by-row picture: each row of tiles is a strip of its own.
     pub(super) fn assemble(&mut self, threads: Option<&rayon::ThreadPool>) {
-        let row_bytes = self.width as usize * 4;
-        let (strip_bytes, tiles_across) = (row_bytes * TILE, (self.width as usize).div_ceil(TILE));
-        let copy = |(strip, tiles): (&mut [u8], &[FilmTile])| assemble_strip(strip, tiles, row_bytes);
-        match threads {
-            Some(threads) => threads.install(|| {
-                self.rgba.par_chunks_mut(strip_bytes).zip(self.tiles.par_chunks(tiles_across)).for_each(copy);
-            }),
-            None => self.rgba.chunks_mut(strip_bytes).zip(self.tiles.chunks(tiles_across)).for_each(copy),
-        }
+        let (pixels, _) = self.rgba.as_chunks_mut();
+        assemble(pixels, self.width as usize, &self.tiles, threads, |tile| &tile.rgba);
+    }
+
+    /// Copies the objects that the tiles' pixels see into `objects`, row by row.
+    pub(super) fn assemble_objects(&self, objects: &mut Vec<u32>, threads: Option<&rayon::ThreadPool>) {
+        objects.resize(self.rgba.len() / 4, u32::MAX);
+        assemble(objects, self.width as usize, &self.tiles, threads, |tile| tile.refinement.objects());
+    }
+
+    /// The assembled picture with the objects it shows, and the tiles.
+    pub(super) fn centres_and_tiles<'a>(&'a mut self, objects: &'a [u32]) -> (Centres<'a>, &'a mut [FilmTile]) {
+        let (rgba, _) = self.rgba.as_chunks();
+        let (width, height) = (self.width as usize, self.height as usize);
+        (Centres { width, height, rgba, objects }, &mut self.tiles)
     }
 }
 
-/// Copies the encoded pixels of a row of tiles.
-fn assemble_strip(strip: &mut [u8], tiles: &[FilmTile], row_bytes: usize) {
-    for tile in tiles {
-        for (row, pixels) in tile.rgba.chunks_exact(tile.width).enumerate() {
-            let start = row * row_bytes + tile.x * 4;
-            strip[start..start + tile.width * 4].copy_from_slice(pixels.as_flattened());
+/// Copies what tiles hold row by row into a whole `width` wide.
+fn assemble<T: Copy + Send + Sync>(
+    whole: &mut [T],
+    width: usize,
+    tiles: &[FilmTile],
+    threads: Option<&rayon::ThreadPool>,
+    part_of: impl Fn(&FilmTile) -> &[T] + Sync + Send,
+) {
+    let copy = |(strip, tiles): (&mut [T], &[FilmTile])| {
+        for tile in tiles {
+            for (row, pixels) in part_of(tile).chunks_exact(tile.width).enumerate() {
+                let start = row * width + tile.x;
+                strip[start..start + tile.width].copy_from_slice(pixels);
+            }
         }
+    };
+    let (strip, tiles_across) = (width * TILE, width.div_ceil(TILE));
+    match threads {
+        Some(threads) => {
+            threads.install(|| whole.par_chunks_mut(strip).zip(tiles.par_chunks(tiles_across)).for_each(copy));
+        }
+        None => whole.chunks_mut(strip).zip(tiles.chunks(tiles_across)).for_each(copy),
     }
 }

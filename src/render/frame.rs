@@ -1,5 +1,6 @@
 //! The waist of the program: one frame from scene, camera and settings.
 
+use super::adaptive;
 use super::film::FilmTile;
 use super::plan::Plan;
 use super::resolve::Encoder;
@@ -12,7 +13,7 @@ use crate::math::{SimdToken, dispatch};
 use crate::scene::camera::CameraFrame;
 use crate::scene::light::{Falloff, LightKind};
 use crate::scene::{Camera, Light, Scene};
-use crate::settings::{Settings, SphereCache, Visibility};
+use crate::settings::{Settings, SphereCache, Supersample, Visibility};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -52,14 +53,16 @@ pub struct Scratch {
     tables: Tables,
     sphere_terms: Vec<Block<4>>,
     around_eye: Vec<u32>,
+    /// The objects that the pixels' centres see, where samples are adaptive.
+    objects: Vec<u32>,
 }
 
 /// Worker threads and what each of them keeps from tile to tile.
 #[derive(Debug)]
-struct Pool {
+pub(super) struct Pool {
     asked: i32,
     /// `None` where the calling thread does it all.
-    threads: Option<rayon::ThreadPool>,
+    pub threads: Option<rayon::ThreadPool>,
     workers: Vec<Mutex<Worker>>,
 }
 
@@ -72,6 +75,28 @@ impl Pool {
         let workers = threads.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
         let workers = (0..workers).map(|_| Mutex::default()).collect();
         Self { asked, threads, workers }
+    }
+
+    /// Does some work for each tile, on all threads, until it is cancelled.
+    pub(super) fn for_each_tile(
+        &self,
+        cancel: &CancelToken,
+        tiles: &mut [FilmTile],
+        work: impl Fn(&mut FilmTile, &mut Worker) + Sync + Send,
+    ) {
+        let work = |tile: &mut FilmTile| {
+            if cancel.is_cancelled() {
+                return;
+            }
+            let index = rayon::current_thread_index().unwrap_or(0) % self.workers.len();
+            // A worker whose thread panicked left nothing behind that the next tile would read.
+            let mut worker = self.workers[index].lock().unwrap_or_else(PoisonError::into_inner);
+            work(tile, &mut worker);
+        };
+        match &self.threads {
+            Some(threads) => threads.install(|| tiles.par_iter_mut().with_max_len(1).for_each(work)),
+            None => tiles.iter_mut().for_each(work),
+        }
     }
 }
 
@@ -95,6 +120,7 @@ impl Scratch {
             tables: Tables::default(),
             sphere_terms: Vec::new(),
             around_eye: Vec::new(),
+            objects: Vec::new(),
         }
     }
 }
@@ -150,14 +176,14 @@ pub fn render_frame(
 ) -> FrameStats {
     let start = Instant::now();
     let token = SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best);
-    let Scratch { cancel, beam_margin, pool, tables, sphere_terms, around_eye } = scratch;
+    let Scratch { cancel, beam_margin, pool, tables, sphere_terms, around_eye, objects } = scratch;
     if tables.generation != Some(scene.generation) {
         *tables = Tables::new(scene);
     }
     if pool.as_ref().is_none_or(|p| p.asked != settings.threads) {
         *pool = Some(Pool::new(settings.threads));
     }
-    let Some(Pool { threads, workers, .. }) = pool else { unreachable!("the pool was just made") };
+    let Some(pool) = pool else { unreachable!("the pool was just made") };
 
     let plan = Plan::with_tables(scene, settings, tables);
     let at_eye = LightKind::Point { position: camera.eye };
@@ -190,30 +216,25 @@ pub fn render_frame(
             SphereCache::Thesis => SphereTerms::Thesis(sphere_terms),
         },
         around_eye,
-        keeps_seen: film.planes().any() || settings.visibility == Visibility::Subsample,
+        keeps_seen: film.planes().any()
+            || settings.visibility == Visibility::Subsample
+            || settings.supersample == Supersample::Adaptive,
         keeps_planes: film.planes().any(),
         keeps_normals: film.planes().normal || plan.trails,
         gain: libm::exp2f(settings.exposure),
         encoder: Encoder::new(settings),
     };
 
-    let work = |film_tile: &mut FilmTile| {
-        if cancel.is_cancelled() {
-            return;
-        }
-        let index = rayon::current_thread_index().unwrap_or(0) % workers.len();
-        // A worker whose thread panicked left nothing behind that the next tile would read.
-        let mut worker = workers[index].lock().unwrap_or_else(PoisonError::into_inner);
-        dispatch!(token, simd => tile::render(simd, &frame, film_tile, &mut worker));
-    };
-    match threads {
-        Some(threads) => threads.install(|| film.tiles.par_iter_mut().with_max_len(1).for_each(work)),
-        None => film.tiles.iter_mut().for_each(work),
+    pool.for_each_tile(cancel, &mut film.tiles, |film_tile, worker| {
+        dispatch!(token, simd => tile::render(simd, &frame, film_tile, worker));
+    });
+    film.assemble(pool.threads.as_ref());
+    if settings.supersample == Supersample::Adaptive {
+        adaptive::refine(token, &frame, pool, film, objects);
     }
-    film.assemble(threads.as_ref());
 
     let mut stats = FrameStats { completed: !cancel.is_cancelled(), ..FrameStats::default() };
-    for worker in workers.iter_mut() {
+    for worker in &mut pool.workers {
         let worker = worker.get_mut().unwrap_or_else(PoisonError::into_inner);
         stats.add(&std::mem::take(&mut worker.stats));
     }

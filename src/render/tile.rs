@@ -50,6 +50,8 @@ pub struct Worker {
     /// Empty queues, for their memory.
     spare: Vec<RayQueue>,
     sums: Colors,
+    /// Pixels of a tile that are to have more samples, by the samples of their centres.
+    pub(super) refined: Vec<u32>,
     /// What the pixels' centres see, while other samples of a grid are seen.
     seen_at_centres: Vec<Seen>,
 }
@@ -110,6 +112,11 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, tile: &mut FilmTile, w
             visibility::render_pass(simd, frame, &centre, worker);
             std::mem::swap(&mut tile.color, &mut worker.color);
         }
+        Supersample::Adaptive => {
+            visibility::render_pass(simd, frame, &centre, worker);
+            std::mem::swap(&mut tile.color, &mut worker.color);
+            tile.store_objects(frame, &worker.seen);
+        }
         Supersample::Grid { side } => {
             if tile.keeps_planes() {
                 // What the grid's samples see is counted, not this.
@@ -129,7 +136,8 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, tile: &mut FilmTile, w
 }
 
 impl Worker {
-    fn begin_tile(&mut self, frame: &Frame<'_>) {
+    /// Makes ready for a tile, and forgets what the last one left.
+    pub(super) fn begin_tile(&mut self, frame: &Frame<'_>) {
         self.shadows.resize_with(frame.lights.len(), ShadowQueue::default);
         self.shadow_scratch.begin_tile(frame.lights.len());
         self.color.prepare();

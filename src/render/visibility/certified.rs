@@ -11,6 +11,8 @@ use crate::geometry::beam::{Beam, Candidates, Cover, Points};
 use crate::geometry::{ClosestHit, Search};
 use crate::math::V3;
 use crate::render::frame::Frame;
+use crate::render::queue::RayQueue;
+use crate::render::samples::pixel_at;
 use crate::render::tile::milliseconds_since;
 use crate::render::trace;
 use fearless_simd::Simd;
@@ -138,14 +140,31 @@ fn find_quarter<S: Simd>(
 
 /// The beam of an area's rays.
 fn beam<'a>(frame: &'a Frame<'_>, pass: &Pass, area: Area) -> Beam<'a> {
+    let first = [(pass.x + area.x) as f32 + pass.offset[0], (pass.y + area.y) as f32 + pass.offset[1]];
+    beam_between(frame, first, [first[0] + (area.width - 1) as f32, first[1] + (area.height - 1) as f32])
+}
+
+/// The beam of all rays through some pixels of the tile at `corner`, given by the samples of their centres.
+pub(super) fn beam_of_pixels<'a>(frame: &'a Frame<'_>, corner: [usize; 2], pixels: &[u32]) -> Beam<'a> {
+    let (mut first, mut last) = ([u16::MAX; 2], [0; 2]);
+    for &pixel in pixels {
+        for (axis, at) in pixel_at(pixel).into_iter().enumerate() {
+            (first[axis], last[axis]) = (at.min(first[axis]), at.max(last[axis]));
+        }
+    }
+    let place = |axis: usize, at: u16| (corner[axis] + usize::from(at)) as f32;
+    beam_between(frame, [place(0, first[0]), place(1, first[1])], [place(0, last[0]) + 1.0, place(1, last[1]) + 1.0])
+}
+
+/// The beam of the rays through a rectangle of the picture, in pixels.
+fn beam_between<'a>(frame: &'a Frame<'_>, first: [f32; 2], last: [f32; 2]) -> Beam<'a> {
     let camera = &frame.camera;
-    let across = |at: f32| ((pass.x + area.x) as f32 + at + pass.offset[0]) * 2.0 / camera.width as f32 - 1.0;
-    let down = |at: f32| 1.0 - ((pass.y + area.y) as f32 + at + pass.offset[1]) * 2.0 / camera.height as f32;
+    let across = |at: f32| at * 2.0 / camera.width as f32 - 1.0;
+    let down = |at: f32| 1.0 - at * 2.0 / camera.height as f32;
     let widening = WIDENING * frame.beam_margin;
-    let (right, bottom) = ((area.width - 1) as f32 + widening, (area.height - 1) as f32 + widening);
     let [half_width, half_height] = frame.half_picture;
-    let x = [across(-widening) * half_width, across(right) * half_width];
-    let y = [down(bottom) * half_height, down(-widening) * half_height];
+    let x = [across(first[0] - widening) * half_width, across(last[0] + widening) * half_width];
+    let y = [down(last[1] + widening) * half_height, down(first[1] - widening) * half_height];
     Beam::new(&frame.projection, x, y).beyond(camera.near)
 }
 
@@ -161,20 +180,7 @@ fn resolve_area<S: Simd>(
 ) {
     let Worker { rays, stats, certain_cells, .. } = worker;
     let pixels = area.pixels();
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            let eye = V3::splat(simd, frame.camera.eye);
-            let (near, far) = (S::f32s::splat(simd, frame.camera.near), S::f32s::splat(simd, frame.camera.far));
-            for at in (area.start..area.start + pixels).step_by(S::f32s::LEN) {
-                let direction: V3<S::f32s> = rays.direction.load(simd, at);
-                let points = Points::along(&frame.projection, direction);
-                let mut visitor = ClosestHit::new(simd, near, far);
-                search.resolve(simd, candidates, &points, eye, direction, &mut visitor);
-                trace::store_hits(simd, &visitor, rays, at);
-            }
-        },
-    );
+    resolve_range(simd, frame, search, candidates, area.start..area.start + pixels, rays);
     if candidates.is_certain() {
         stats.pixels.certified += pixels as u64;
         for cell in cells {
@@ -187,4 +193,29 @@ fn resolve_area<S: Simd>(
             stats.certificates.refused += pixels as u64;
         }
     }
+}
+
+/// Tests rays from the eye against all that they can meet, and perhaps rays behind them.
+pub(super) fn resolve_range<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    search: &Search<'_>,
+    candidates: &Candidates,
+    range: Range<usize>,
+    rays: &mut RayQueue,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let eye = V3::splat(simd, frame.camera.eye);
+            let (near, far) = (S::f32s::splat(simd, frame.camera.near), S::f32s::splat(simd, frame.camera.far));
+            for at in range.step_by(S::f32s::LEN) {
+                let direction: V3<S::f32s> = rays.direction.load(simd, at);
+                let points = Points::along(&frame.projection, direction);
+                let mut visitor = ClosestHit::new(simd, near, far);
+                search.resolve(simd, candidates, &points, eye, direction, &mut visitor);
+                trace::store_hits(simd, &visitor, rays, at);
+            }
+        },
+    );
 }

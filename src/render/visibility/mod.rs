@@ -2,11 +2,14 @@
 
 mod certified;
 mod full;
+mod grids;
 mod order;
 mod smooth;
 mod subsample;
 
 pub use certified::Levels;
+pub(super) use grids::render_grids;
+pub use grids::{GRID, GRID_SIDE};
 pub use order::Order;
 pub(super) use smooth::POINTS;
 pub use smooth::Smooth;
