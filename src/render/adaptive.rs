@@ -4,7 +4,7 @@
 //! their colours, as they are shown, differ by more than a threshold. Then what the grids find leads on, as in Whitted's
 //! subdivision (CACM 1980): where samples along a side of a refined pixel differ from the neighbour there, that one is
 //! refined, too. So a thin thing that is met anywhere is followed, and where a distant pattern's aliasing leaves a few
-//! pixels alike by chance, they are not taken for flat; the thesis's rule alone is nine times as wrong there.
+//! pixels alike by chance, they are not taken for flat; the thesis's rule alone is ten times as wrong there.
 //!
 //! Which pixels are refined is the least set that both rules agree to: it depends on what samples see, and not on tiles
 //! or threads. A refined pixel is that of `--supersample 16`, any other that of `--supersample off`, bit for bit.
@@ -23,8 +23,7 @@ use std::time::Instant;
 
 /// Colours differ if any channel differs by more than this, of 255.
 ///
-/// On the scenes in `scenes/` 8 refines a third more pixels for half of the error, 24 has twice the error for a tenth
-/// less.
+/// In the gallery 8 refines a third more pixels for half of the error, 24 a fifth fewer for half as much error again.
 const THRESHOLD: u8 = 16;
 
 /// Grids that are shaded together: as many samples as a tile has pixels.
