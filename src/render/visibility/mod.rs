@@ -54,13 +54,18 @@ fn trace_pixels<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, pixels: &[[u16
 
 /// Shades the hits in `worker.rays`, whose samples start from black.
 fn shade_queue<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
+    note_seen(frame, worker);
+    worker.shade_paths(simd, frame);
+}
+
+/// Notes what the rays in `worker.rays` see, if anybody asks for it; normals follow when they are shaded.
+fn note_seen(frame: &Frame<'_>, worker: &mut Worker) {
     if frame.keeps_seen {
         for at in 0..worker.rays.len() {
             let sample = worker.rays.sample[at] as usize;
             worker.seen[sample] = Seen { primitive: worker.rays.primitive[at], t: worker.rays.t[at], normal: [0.0; 3] };
         }
     }
-    worker.shade_paths(simd, frame);
 }
 
 /// Replaces `worker.rays` by rays from the eye through the given pixels.

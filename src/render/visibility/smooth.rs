@@ -6,7 +6,7 @@
 //! Akimoto, Mase and Suenaga, "Pixel-selected ray tracing", IEEE CG&A 11(4), 1991, who interpolate what they did not
 //! prove); textures are looked up for every pixel.
 
-use super::{Worker, certified, shade_queue};
+use super::{Worker, certified, note_seen};
 use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex};
 use crate::math::V3;
 use crate::render::film::TILE;
@@ -85,19 +85,22 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &
     certified::find(simd, frame, pass, worker);
     let mut smooth = std::mem::take(&mut worker.smooth);
     let start = Instant::now();
+    if frame.keeps_normals {
+        // Cells that get their light here are not shaded again, which is when normals are noted.
+        shade::store_seen(simd, frame, worker);
+    } else {
+        note_seen(frame, worker);
+    }
     worker.lit_cells = 0;
     smooth.choose(frame, worker);
     if !smooth.patches.is_empty() {
-        if frame.keeps_planes {
-            shade::store_seen(simd, frame, worker);
-        }
         smooth.shade(simd, frame, worker);
         worker.lit_cells = smooth.fill(simd, frame, worker);
         count_cells(worker);
     }
     worker.stats.stages_ms.shade += milliseconds_since(start);
     worker.smooth = smooth;
-    shade_queue(simd, frame, worker);
+    worker.shade_paths(simd, frame);
 }
 
 /// In which paints a material's patches are shaded; none if they are not to be interpolated.
