@@ -1,5 +1,6 @@
 //! The waist of the program: one frame from scene, camera and settings.
 
+use super::accumulate::Progress;
 use super::film::FilmTile;
 use super::plan::Plan;
 use super::resolve::Encoder;
@@ -130,6 +131,8 @@ pub(super) struct Frame<'a> {
     pub keeps_planes: bool,
     pub keeps_normals: bool,
     pub encoder: Encoder,
+    /// Of a film that gathers samples: how far it came before this frame.
+    pub progress: Option<Progress>,
 }
 
 /// Renders one frame into `film`.
@@ -191,6 +194,7 @@ pub fn render_frame(
         keeps_planes: film.planes().any(),
         keeps_normals: film.planes().normal,
         encoder: Encoder::new(settings),
+        progress: film.progress,
     };
 
     let work = |film_tile: &mut FilmTile| {
@@ -209,6 +213,8 @@ pub fn render_frame(
     film.assemble(threads.as_ref());
 
     let mut stats = FrameStats { completed: !cancel.is_cancelled(), ..FrameStats::default() };
+    // What was cancelled has its sample in some tiles only.
+    film.progress = film.progress.map(|before| if stats.completed { before.next() } else { Progress::default() });
     for worker in workers.iter_mut() {
         let worker = worker.get_mut().unwrap_or_else(PoisonError::into_inner);
         stats.add(&std::mem::take(&mut worker.stats));

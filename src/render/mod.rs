@@ -5,6 +5,7 @@
 //! follows mirrors and glass; `resolve` encodes the result. All of it runs in lanes, a packet of rays at a time.
 
 mod absorption;
+mod accumulate;
 mod brdf;
 mod direct;
 mod extent;

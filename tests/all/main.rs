@@ -1,5 +1,6 @@
 //! All integration tests, in one binary: one module a subject.
 
+mod accumulation;
 mod adversary;
 mod blit;
 mod cli;
