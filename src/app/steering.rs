@@ -59,16 +59,16 @@ impl Steering {
             return;
         }
         self.frames += 1;
-        // The first frame of a level has caches to fill.
+        let slow = milliseconds > target;
+        self.slow = if slow { self.slow + 1 } else { 0 };
+        // The first frame of a level has caches to fill: what it took says little of the others.
         if self.frames == 1 {
             return;
         }
         if let Some(before) = self.before_fall.take() {
             self.ratios[level - 1] = before / milliseconds.max(1e-3);
         }
-        let slow = milliseconds > target;
         let roomy = !slow && level > 0 && milliseconds * self.cost_of_rise() <= RISE_TO * target;
-        self.slow = if slow { self.slow + 1 } else { 0 };
         self.roomy = if roomy { self.roomy + 1 } else { 0 };
         if self.slow >= SLOW_FRAMES && level + 1 < self.levels() {
             self.fall(milliseconds, target);

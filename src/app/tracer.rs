@@ -91,7 +91,7 @@ struct Exchange {
 }
 
 impl Exchange {
-    /// A film to trace `job` into, if one is left over; those of another size are dropped.
+    /// A film for the picture of `job`, if one is left over; those of another size are dropped.
     fn spare_film(&mut self, job: &Job) -> Option<Film> {
         self.spare.retain(|film| (film.width(), film.height()) == (job.width, job.height));
         self.spare.pop()
@@ -219,8 +219,8 @@ impl<F: Fn(Word)> Drop for Parting<'_, F> {
 
 /// What the thread does next.
 enum Task {
-    /// A frame, into a film that is left over.
-    Frame(Job, Option<Film>),
+    /// A frame.
+    Frame(Job),
     /// One more sample a pixel of the last view.
     Pass,
 }
@@ -237,9 +237,9 @@ impl Worker {
         let mut at_rest = AtRest::default();
         while let Some(task) = self.begin(next_start, at_rest.due()) {
             let has_frame = match task {
-                Task::Frame(job, film) => {
+                Task::Frame(job) => {
                     next_start = Instant::now() + self.interval;
-                    self.trace(job, film, render, &mut at_rest)
+                    self.trace(job, render, &mut at_rest)
                 }
                 Task::Pass => self.refine(render, &mut at_rest),
             };
@@ -271,13 +271,12 @@ impl Worker {
             return Some(Task::Pass);
         };
         exchange.running = Some((job.clone(), Instant::now()));
-        let film = exchange.spare_film(&job);
-        Some(Task::Frame(job, film))
+        Some(Task::Frame(job))
     }
 
     /// Traces a frame and puts it into the box; false for one that was dropped on the way.
-    fn trace(&self, job: Job, film: Option<Film>, render: Render<'_>, at_rest: &mut AtRest) -> bool {
-        let mut film = film.unwrap_or_else(|| Film::new(job.width, job.height, Planes::default()));
+    fn trace(&self, job: Job, render: Render<'_>, at_rest: &mut AtRest) -> bool {
+        let mut film = self.film_for(&job);
         let stats = render(&job, &mut film);
         let mut exchange = self.shared.lock();
         exchange.running = None;
@@ -295,16 +294,24 @@ impl Worker {
         let pass = at_rest.pass(render);
         let mut exchange = self.shared.lock();
         exchange.refining = false;
-        let Some((job, refined, stats)) = pass.filter(|_| exchange.job.is_none()) else { return false };
+        let is_left = exchange.job.is_some();
+        drop(exchange);
+        let Some((job, refined, stats)) = pass.filter(|_| !is_left) else { return false };
         let samples = refined.samples();
         if !samples.is_some_and(|samples| at_rest::is_better(samples, job.settings.supersample)) {
             return false;
         }
-        let film = exchange.spare_film(job);
-        let mut film = film.unwrap_or_else(|| Film::new(job.width, job.height, Planes::default()));
+        let mut film = self.film_for(job);
         film.copy_rgba(refined);
-        exchange.put(TracedFrame { film, stats, finished: Instant::now(), job: job.clone(), samples });
+        let frame = TracedFrame { film, stats, finished: Instant::now(), job: job.clone(), samples };
+        self.shared.lock().put(frame);
         true
+    }
+
+    /// A film for the picture of `job`. Made without the lock: the event loop does not wait for memory.
+    fn film_for(&self, job: &Job) -> Film {
+        let spare = self.shared.lock().spare_film(job);
+        spare.unwrap_or_else(|| Film::new(job.width, job.height, Planes::default()))
     }
 }
 
@@ -450,7 +457,7 @@ mod tests {
     }
 
     #[test]
-    fn sixteen_passes_and_none_where_they_are_not_wanted_or_not_needed() {
+    fn nothing_is_refined_where_that_is_not_wanted_or_not_needed() {
         let traced = Arc::new(AtomicUsize::new(0));
         let count = traced.clone();
         let render = move |_: &Job, _: &mut Film| {
