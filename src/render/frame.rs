@@ -13,7 +13,7 @@ use crate::math::{SimdToken, dispatch};
 use crate::scene::camera::CameraFrame;
 use crate::scene::light::{Falloff, LightKind};
 use crate::scene::{Camera, Light, Scene};
-use crate::settings::{Settings, SphereCache, Visibility};
+use crate::settings::{Settings, SphereCache, Supersample, Visibility};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -149,6 +149,9 @@ pub fn render_frame(
     film: &mut Film,
 ) -> FrameStats {
     let start = Instant::now();
+    // A film that gathers samples takes one a frame, however many the settings ask for.
+    let one_sample = Settings { supersample: Supersample::Off, ..settings.clone() };
+    let settings = if film.progress.is_some() { &one_sample } else { settings };
     let token = SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best);
     let Scratch { cancel, beam_margin, pool, tables, sphere_terms, around_eye } = scratch;
     if tables.generation != Some(scene.generation) {

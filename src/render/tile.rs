@@ -104,13 +104,13 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, tile: &mut FilmTile, w
         continues_down: tile.y + tile.height < frame.camera.height as usize,
         offset: [0.5, 0.5],
     };
-    match (frame.progress, frame.settings.supersample) {
-        (Some(before), _) => worker.render_sample(simd, frame, &centre, before, tile),
-        (None, Supersample::Off) => {
+    match frame.settings.supersample {
+        _ if let Some(before) = frame.progress => worker.render_sample(simd, frame, &centre, before, tile),
+        Supersample::Off => {
             visibility::render_pass(simd, frame, &centre, worker);
             std::mem::swap(&mut tile.color, &mut worker.color);
         }
-        (None, Supersample::Grid { side }) => {
+        Supersample::Grid { side } => {
             if tile.keeps_planes() {
                 // What the grid's samples see is counted, not this.
                 let pixels = worker.stats.pixels;
