@@ -66,6 +66,17 @@ pub enum Supersample {
     },
 }
 
+impl Supersample {
+    /// Most rays through one pixel.
+    pub fn rays(self) -> u32 {
+        match self {
+            Self::Off => 1,
+            Self::Adaptive => 16,
+            Self::Grid { side } => side * side,
+        }
+    }
+}
+
 /// The curve between linear light and the 8-bit picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ToneMap {
@@ -123,6 +134,10 @@ pub struct Settings {
     pub tone_map: ToneMap,
     /// Exposure in stops, applied before the tone curve.
     pub exposure: f32,
+    /// The window goes on to 16 rays a pixel when motion stops; nothing else looks at it.
+    pub refine_at_rest: bool,
+    /// Frames a second for which the window gives up quality while moving; nothing else looks at it.
+    pub target_fps: Option<u32>,
     /// How the window shows frames; nothing else looks at it.
     pub present: Present,
 }
@@ -154,6 +169,8 @@ impl Settings {
             min_weight: 0.0,
             tone_map: ToneMap::None,
             exposure: 0.0,
+            refine_at_rest: false,
+            target_fps: None,
             present: Present::Auto,
         }
     }
@@ -386,6 +403,23 @@ pub const ROWS: &[Row] = &[
         kind: Kind::Number { min: -20.0, max: 20.0, integer: false, promise: Promise::Different },
         get: |s| s.exposure.to_string(),
         set: |s, text| number(text, -20.0, 20.0).map(|v| s.exposure = v as f32),
+    },
+    switch_row!(
+        "refine-at-rest",
+        "when motion stops, the window gathers samples up to the picture of supersample 16, then rests; on by default in the window, without effect elsewhere",
+        refine_at_rest,
+        Kind::Choice(&[same("off"), different("on")])
+    ),
+    Row {
+        name: "target-fps",
+        help: "frames a second for which the window lowers the preset, then the render scale, while moving; off or 0 lowers nothing",
+        kind: Kind::Number { min: 0.0, max: 240.0, integer: true, promise: Promise::Approximate },
+        get: |s| s.target_fps.map_or_else(|| "off".to_owned(), |fps| fps.to_string()),
+        set: |s, text| {
+            let fps = if text == "off" { 0 } else { integer(text, 0, 240)? as u32 };
+            s.target_fps = (fps > 0).then_some(fps);
+            Ok(())
+        },
     },
     choice_row!("present", "how the window shows a frame: auto copies it directly where the adapter is software, else blits",
         present, ["auto" => Present::Auto, same; "blit" => Present::Blit, same; "direct" => Present::Direct, same]),

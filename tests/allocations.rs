@@ -74,8 +74,13 @@ fn a_frame_allocates_nothing_once_warm() {
     let mut wrong = Vec::new();
     for scene in scenes() {
         let camera = scene.cameras[0].camera;
-        for (threads, planes) in [(1, all_planes), (2, no_planes)] {
-            let (mut scratch, mut film) = (Scratch::new(), Film::new(SIZE.0, SIZE.1, planes));
+        let films = [
+            (1, Film::new(SIZE.0, SIZE.1, all_planes)),
+            (2, Film::new(SIZE.0, SIZE.1, no_planes)),
+            (2, Film::accumulating(SIZE.0, SIZE.1)),
+        ];
+        for (threads, mut film) in films {
+            let mut scratch = Scratch::new();
             for (name, settings) in &options {
                 let settings = Settings { threads, ..*settings };
                 let mut quiet = || walk(&scene, &camera, &settings, &mut scratch, &mut film) == 0;

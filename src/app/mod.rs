@@ -13,13 +13,16 @@ pub mod overlay;
 pub mod present;
 pub mod walker;
 
+mod at_rest;
 mod capture;
 mod display;
 mod gpu;
 mod layer;
 mod look;
+mod lowering;
 mod pacing;
 mod session;
+mod steering;
 mod tracer;
 mod viewer;
 

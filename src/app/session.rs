@@ -1,19 +1,22 @@
 //! One open window: who gets which event, when to trace, when to draw.
 
+use super::at_rest::REST;
 use super::capture::{Capture, PointerHost};
 use super::error::AppError;
 use super::gpu::{Gpu, Target};
 use super::history::History;
 use super::input::{Command, Keys};
 use super::layer::Layer;
-use super::overlay::{self, Change, Shown, View};
+use super::lowering::{lowered, presets_below};
+use super::overlay::{self, Change, Showing, Shown, View};
 use super::pacing::{Limiter, Rates};
 use super::present::Presenter;
+use super::steering::Steering;
 use super::tracer::{Job, TracedFrame, Tracer, Word};
 use super::walker::{self, Walker};
 use super::{AppExit, AppOptions};
 use crate::render::FrameStats;
-use crate::scene::Scene;
+use crate::scene::{Camera, Scene};
 use crate::settings::Settings;
 use glam::DVec2;
 use std::sync::Arc;
@@ -53,6 +56,11 @@ pub struct Session {
     stats: FrameStats,
     shown: Shown,
     posted: Option<Job>,
+    /// What the last frame shows, and with how many samples a pixel if it was refined.
+    traced: Option<(Job, Option<u32>)>,
+    steering: Steering,
+    /// Where the walker last was, and since when it has been there.
+    stands: (Camera, Option<Instant>),
     fresh: Option<TracedFrame>,
     rates: Rates,
     /// When to present, and when to draw the overlay before that.
@@ -100,6 +108,9 @@ impl Session {
             stats: FrameStats::default(),
             shown: Shown::default(),
             posted: None,
+            traced: None,
+            steering: Steering::new(presets_below(&options.settings)),
+            stands: (options.camera, None),
             fresh: None,
             rates,
             picture: Limiter::default(),
@@ -226,10 +237,16 @@ impl Session {
     pub fn fetch_frame(&mut self) {
         let Some(frame) = self.tracer.take() else { return };
         let now = Instant::now();
-        self.history.record(frame.finished, frame.stats.frame_ms);
-        let present = self.stats.stages_ms.present;
-        self.stats = frame.stats.clone();
-        self.stats.stages_ms.present = present;
+        if frame.samples.is_none() {
+            self.history.record(frame.finished, frame.stats.frame_ms);
+            if let Some(fps) = self.settings.target_fps {
+                self.steering.measured(frame.job.lowering.level, frame.stats.frame_ms, 1e3 / f64::from(fps));
+            }
+            let present = self.stats.stages_ms.present;
+            self.stats = frame.stats.clone();
+            self.stats.stages_ms.present = present;
+        }
+        self.traced = Some((frame.job.clone(), frame.samples));
         if let Some(missed) = self.fresh.replace(frame) {
             self.tracer.recycle(missed.film);
         }
@@ -242,9 +259,10 @@ impl Session {
     /// Moves on, asks for frames and drawings as needed, and says when to be called again at the latest.
     pub fn tick(&mut self, now: Instant) -> Option<Instant> {
         self.step(now);
-        self.post();
+        let rest = self.post(now);
         let mut next = self.tracer.drop_outdated();
         let mut call_at = |at: Instant| next = Some(next.map_or(at, |next: Instant| next.min(at)));
+        rest.into_iter().for_each(&mut call_at);
         if self.stepped.is_some() {
             call_at(now + STEP);
         }
@@ -272,16 +290,38 @@ impl Session {
         self.stepped = motion.is_moving().then_some(now);
     }
 
-    /// Asks for a frame when it would differ from the one last asked for.
-    fn post(&mut self) {
+    /// Asks for a frame when it would differ from the one last asked for. Says when motion will have stopped, if that
+    /// would change what is asked for.
+    fn post(&mut self, now: Instant) -> Option<Instant> {
         let (width, height) = picture_size(self.gpu.size());
         if width == 0 || height == 0 {
-            return;
+            return None;
         }
-        let job = Job { camera: self.walker.camera(), settings: self.settings.clone(), width, height };
+        let camera = self.walker.camera();
+        if self.stands.0 != camera {
+            self.stands = (camera, Some(now));
+        }
+        let stops =
+            self.stands.1.map(|since| since + REST).filter(|&at| at > now && self.settings.target_fps.is_some());
+        let lowering = self.steering.lowering(stops.is_some());
+        let settings = lowered(&self.settings, lowering);
+        let (width, height) = (lowering.scaled(width), lowering.scaled(height));
+        let job = Job { camera, settings, width, height, lowering };
         if self.posted.as_ref() != Some(&job) {
             self.posted = Some(job.clone());
             self.tracer.post(job);
+        }
+        stops.filter(|_| lowering.level > 0)
+    }
+
+    /// What the picture is.
+    fn showing(&self) -> Showing {
+        match &self.traced {
+            Some((_, Some(samples))) => Showing::Refined(*samples),
+            Some((Job { lowering, .. }, None)) if lowering.level > 0 => {
+                Showing::Moving { preset: lowering.preset, scale: lowering.scale }
+            }
+            _ => Showing::AsSet,
         }
     }
 
@@ -320,7 +360,8 @@ impl Session {
             stats: &self.stats,
             history: &self.history,
             resting,
-            size: picture_size(self.gpu.size()),
+            size: self.traced.as_ref().map_or(picture_size(self.gpu.size()), |(job, _)| (job.width, job.height)),
+            showing: self.showing(),
             speed: self.walker.speed(),
             fov: self.walker.fov(),
             sensitivity: self.walker.sensitivity,
@@ -354,6 +395,7 @@ impl Session {
         match change {
             Change::Settings(settings) => {
                 let shown_otherwise = settings.present != self.settings.present;
+                self.steering = Steering::new(presets_below(&settings));
                 self.settings = settings;
                 if shown_otherwise {
                     self.replace_presenter(Instant::now());

@@ -1,8 +1,11 @@
 //! The tracing thread: the newest job in, the newest frame out, nothing in between ever waits.
 //!
 //! The event loop posts what to trace and goes on; a job that was not begun is replaced by the next. Finished frames
-//! wait in a box of one, and their films travel back to be used again. Without a new job the thread sleeps.
+//! wait in a box of one, and their films travel back to be used again. Without a new job the last view is refined, and
+//! then the thread sleeps.
 
+use super::at_rest::{self, AtRest};
+use super::lowering::Lowering;
 use crate::render::{CancelToken, Film, FrameStats, Planes, Scratch, render_frame};
 use crate::scene::{Camera, Scene};
 use crate::settings::Settings;
@@ -25,12 +28,26 @@ pub struct Job {
     pub width: u32,
     /// Picture height in pixels, at least 1.
     pub height: u32,
+    /// What of it was given up for speed.
+    pub lowering: Lowering,
 }
 
 impl Job {
     /// Whether a frame of `other` shows this one from elsewhere: worth finishing while the walker moves.
     fn differs_by_camera_only(&self, other: &Self) -> bool {
         self.settings == other.settings && (self.width, self.height) == (other.width, other.height)
+    }
+
+    /// How long a frame of `running` may go on while this one waits; `None` for to its end.
+    fn patience(&self, running: &Self) -> Option<Duration> {
+        if self.differs_by_camera_only(running) {
+            None
+        } else if self.lowering.level > 0 && running.lowering.level == 0 {
+            // Motion began, and asks for speed.
+            Some(Duration::ZERO)
+        } else {
+            Some(PATIENCE)
+        }
     }
 }
 
@@ -43,7 +60,14 @@ pub struct TracedFrame {
     pub stats: FrameStats,
     /// When it was done.
     pub finished: Instant,
+    /// What it shows.
+    pub job: Job,
+    /// Samples a pixel, where it was refined at rest.
+    pub samples: Option<u32>,
 }
+
+/// Renders a job into a film.
+pub type Render<'a> = &'a mut dyn FnMut(&Job, &mut Film) -> FrameStats;
 
 /// What the tracing thread sends word of. Called on that thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,9 +83,25 @@ pub enum Word {
 struct Exchange {
     job: Option<Job>,
     running: Option<(Job, Instant)>,
+    /// The last view is being refined.
+    refining: bool,
     done: Option<TracedFrame>,
     spare: Vec<Film>,
     stop: bool,
+}
+
+impl Exchange {
+    /// A film for the picture of `job`, if one is left over; those of another size are dropped.
+    fn spare_film(&mut self, job: &Job) -> Option<Film> {
+        self.spare.retain(|film| (film.width(), film.height()) == (job.width, job.height));
+        self.spare.pop()
+    }
+
+    /// Puts a frame into the box, in place of one that was not taken.
+    fn put(&mut self, frame: TracedFrame) {
+        let missed = self.done.replace(frame);
+        self.spare.extend(missed.map(|frame| frame.film));
+    }
 }
 
 #[derive(Debug, Default)]
@@ -113,9 +153,14 @@ impl Tracer {
         Ok(Self { shared, cancel, thread: Some(thread) })
     }
 
-    /// Asks for a frame, in place of one that was asked for and not begun.
+    /// Asks for a frame, in place of one that was asked for and not begun. What is refined is dropped at once.
     pub fn post(&self, job: Job) {
-        self.shared.lock().job = Some(job);
+        let mut exchange = self.shared.lock();
+        exchange.job = Some(job);
+        if exchange.refining {
+            self.cancel.cancel();
+        }
+        drop(exchange);
         self.shared.wake.notify_one();
     }
 
@@ -124,14 +169,12 @@ impl Tracer {
         let exchange = self.shared.lock();
         let (running, began) = exchange.running.as_ref()?;
         let waiting = exchange.job.as_ref()?;
-        if waiting.differs_by_camera_only(running) || self.cancel.is_cancelled() {
-            return None;
-        }
-        if began.elapsed() >= PATIENCE {
+        let patience = waiting.patience(running).filter(|_| !self.cancel.is_cancelled())?;
+        if began.elapsed() >= patience {
             self.cancel.cancel();
             return None;
         }
-        Some(*began + PATIENCE)
+        Some(*began + patience)
     }
 
     /// The newest finished frame, once.
@@ -144,7 +187,7 @@ impl Tracer {
         self.shared.lock().spare.push(film);
     }
 
-    /// Whether a frame is being traced or waits to be.
+    /// Whether a frame is being traced or waits to be, refinement aside.
     pub fn is_busy(&self) -> bool {
         let exchange = self.shared.lock();
         exchange.running.is_some() || exchange.job.is_some()
@@ -174,6 +217,14 @@ impl<F: Fn(Word)> Drop for Parting<'_, F> {
     }
 }
 
+/// What the thread does next.
+enum Task {
+    /// A frame.
+    Frame(Job),
+    /// One more sample a pixel of the last view.
+    Pass,
+}
+
 struct Worker {
     shared: Arc<Shared>,
     cancel: CancelToken,
@@ -181,67 +232,100 @@ struct Worker {
 }
 
 impl Worker {
-    fn run(&self, render: &mut dyn FnMut(&Job, &mut Film) -> FrameStats, word: &dyn Fn(Word)) {
+    fn run(&self, render: Render<'_>, word: &dyn Fn(Word)) {
         let mut next_start = Instant::now();
-        while let Some((job, film)) = self.begin(next_start) {
-            next_start = Instant::now() + self.interval;
-            let mut film = film.unwrap_or_else(|| Film::new(job.width, job.height, Planes::default()));
-            let stats = render(&job, &mut film);
-            if self.finish(film, stats) {
+        let mut at_rest = AtRest::default();
+        while let Some(task) = self.begin(next_start, at_rest.due()) {
+            let has_frame = match task {
+                Task::Frame(job) => {
+                    next_start = Instant::now() + self.interval;
+                    self.trace(job, render, &mut at_rest)
+                }
+                Task::Pass => self.refine(render, &mut at_rest),
+            };
+            if has_frame {
                 word(Word::Frame);
             }
         }
     }
 
-    /// Sleeps until there is a job and it is time, then takes the newest; `None` to stop.
-    fn begin(&self, not_before: Instant) -> Option<(Job, Option<Film>)> {
+    /// Sleeps until there is a job and it is time, then takes the newest; or until a pass is due. `None` to stop.
+    fn begin(&self, not_before: Instant, pass_due: Option<Instant>) -> Option<Task> {
         let mut exchange = self.shared.lock();
-        loop {
+        let job = loop {
             if exchange.stop {
                 return None;
             }
-            let wait = not_before.saturating_duration_since(Instant::now());
-            exchange = if exchange.job.is_none() {
-                self.shared.wake.wait(exchange).unwrap_or_else(PoisonError::into_inner)
-            } else if !wait.is_zero() {
-                self.shared.wake.wait_timeout(exchange, wait).unwrap_or_else(PoisonError::into_inner).0
-            } else {
-                break;
+            let due = if exchange.job.is_some() { Some(not_before) } else { pass_due };
+            let wait = due.map(|due| due.saturating_duration_since(Instant::now()));
+            exchange = match wait {
+                None => self.shared.wake.wait(exchange).unwrap_or_else(PoisonError::into_inner),
+                Some(Duration::ZERO) => break exchange.job.take(),
+                Some(wait) => self.shared.wake.wait_timeout(exchange, wait).unwrap_or_else(PoisonError::into_inner).0,
             };
-        }
-        let job = exchange.job.take()?;
+        };
         // Under the same lock as `post` and `drop`, so that no request to stop is lost.
         self.cancel.reset();
+        let Some(job) = job else {
+            exchange.refining = true;
+            return Some(Task::Pass);
+        };
         exchange.running = Some((job.clone(), Instant::now()));
-        exchange.spare.retain(|film| (film.width(), film.height()) == (job.width, job.height));
-        let film = exchange.spare.pop();
-        Some((job, film))
+        Some(Task::Frame(job))
     }
 
-    /// Puts a completed frame into the box; false for one that was dropped on the way.
-    fn finish(&self, film: Film, stats: FrameStats) -> bool {
+    /// Traces a frame and puts it into the box; false for one that was dropped on the way.
+    fn trace(&self, job: Job, render: Render<'_>, at_rest: &mut AtRest) -> bool {
+        let mut film = self.film_for(&job);
+        let stats = render(&job, &mut film);
         let mut exchange = self.shared.lock();
         exchange.running = None;
         if !stats.completed {
             exchange.spare.push(film);
             return false;
         }
-        let missed = exchange.done.replace(TracedFrame { film, stats, finished: Instant::now() });
-        exchange.spare.extend(missed.map(|frame| frame.film));
+        at_rest.begin(job.clone(), Instant::now());
+        exchange.put(TracedFrame { film, stats, finished: Instant::now(), job, samples: None });
         true
+    }
+
+    /// Traces one sample more of each pixel, and puts the picture into the box where that made it better.
+    fn refine(&self, render: Render<'_>, at_rest: &mut AtRest) -> bool {
+        let pass = at_rest.pass(render);
+        let mut exchange = self.shared.lock();
+        exchange.refining = false;
+        let is_left = exchange.job.is_some();
+        drop(exchange);
+        let Some((job, refined, stats)) = pass.filter(|_| !is_left) else { return false };
+        let samples = refined.samples();
+        if !samples.is_some_and(|samples| at_rest::is_better(samples, job.settings.supersample)) {
+            return false;
+        }
+        let mut film = self.film_for(job);
+        film.copy_rgba(refined);
+        let frame = TracedFrame { film, stats, finished: Instant::now(), job: job.clone(), samples };
+        self.shared.lock().put(frame);
+        true
+    }
+
+    /// A film for the picture of `job`. Made without the lock: the event loop does not wait for memory.
+    fn film_for(&self, job: &Job) -> Film {
+        let spare = self.shared.lock().spare_film(job);
+        spare.unwrap_or_else(|| Film::new(job.width, job.height, Planes::default()))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::Supersample;
     use std::sync::atomic::{AtomicUsize, Ordering};
     use std::sync::mpsc::{Receiver, channel};
 
     fn job(width: u32, x: f32) -> Job {
         let mut camera = Camera::default();
         camera.eye.x = x;
-        Job { camera, settings: Settings::default(), width, height: 4 }
+        Job { camera, settings: Settings::default(), width, height: 4, lowering: Lowering::NONE }
     }
 
     fn start(
@@ -325,6 +409,121 @@ mod tests {
         assert_eq!(begins.recv_timeout(SOON), Ok(4));
         drop(tracer);
         assert_eq!(words.recv_timeout(SOON), Ok(Word::Gone));
+    }
+
+    fn at_rest(width: u32, x: f32) -> Job {
+        let mut job = job(width, x);
+        job.settings.refine_at_rest = true;
+        job
+    }
+
+    /// The frames that come until none comes for a while.
+    fn frames(tracer: &Tracer, words: &Receiver<Word>) -> Vec<TracedFrame> {
+        let mut frames = Vec::new();
+        while words.recv_timeout(4 * at_rest::REST).is_ok() {
+            frames.extend(tracer.take());
+        }
+        frames
+    }
+
+    #[test]
+    fn a_view_at_rest_becomes_supersample_16_byte_for_byte_and_then_nothing_is_traced() {
+        let scene = Arc::new(crate::scene::builtin(&crate::scene::LoadOptions::default()).expect("it loads"));
+        let camera = scene.cameras[0].camera;
+        for settings in [Settings::exact(), Settings { supersample: Supersample::Grid { side: 2 }, ..Settings::fast() }]
+        {
+            let (width, height) = (80, 45);
+            let (sender, words) = channel();
+            let word = move |word| sender.send(word).unwrap_or(());
+            let tracer = Tracer::start(scene.clone(), Duration::ZERO, word).expect("a thread starts");
+            let at_rest = Settings { refine_at_rest: true, ..settings.clone() };
+            tracer.post(Job { camera, settings: at_rest, width, height, lowering: Lowering::NONE });
+            let frames = frames(&tracer, &words);
+            let picture = |supersample| {
+                let mut film = Film::new(width, height, Planes::default());
+                let settings = Settings { supersample, ..settings.clone() };
+                render_frame(&scene, &camera, &settings, &mut Scratch::new(), &mut film);
+                film
+            };
+            let (first, last) = (frames.first().expect("a frame"), frames.last().expect("a frame"));
+            assert_eq!((first.samples, last.samples), (None, Some(16)));
+            assert!(first.film.rgba() == picture(settings.supersample).rgba(), "the first as set");
+            assert!(last.film.rgba() == picture(Supersample::Grid { side: 4 }).rgba(), "the last with 16 samples");
+            assert!(first.film.rgba() != last.film.rgba(), "this scene is no test");
+            let samples: Vec<_> = frames.iter().skip(1).filter_map(|frame| frame.samples).collect();
+            assert!(samples.is_sorted() && samples[0] > settings.supersample.rays(), "{samples:?}");
+            assert!(words.recv_timeout(2 * at_rest::REST).is_err(), "asleep");
+        }
+    }
+
+    #[test]
+    fn nothing_is_refined_where_that_is_not_wanted_or_not_needed() {
+        let traced = Arc::new(AtomicUsize::new(0));
+        let count = traced.clone();
+        let render = move |_: &Job, _: &mut Film| {
+            count.fetch_add(1, Ordering::SeqCst);
+            FrameStats { completed: true, ..FrameStats::default() }
+        };
+        let (tracer, words) = start(render, CancelToken::default());
+        let mut enough = at_rest(4, 0.0);
+        enough.settings.supersample = Supersample::Grid { side: 5 };
+        for job in [job(4, 0.0), enough] {
+            tracer.post(job);
+            assert_eq!(frames(&tracer, &words).len(), 1);
+        }
+        assert_eq!(traced.load(Ordering::SeqCst), 2);
+    }
+
+    #[test]
+    fn motion_drops_a_pass_at_once() {
+        let cancel = CancelToken::default();
+        let asked = cancel.clone();
+        let (began, begins) = channel();
+        let render = move |job: &Job, film: &mut Film| {
+            let pass = film.samples().is_some();
+            began.send((job.camera.eye.x, pass)).expect("the test listens");
+            // A pass that would take for ever.
+            while pass && !asked.is_cancelled() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            FrameStats { completed: !pass, ..FrameStats::default() }
+        };
+        let (tracer, words) = start(render, cancel);
+        for x in [0.0, 1.0, 2.0] {
+            tracer.post(at_rest(4, x));
+            assert_eq!(begins.recv_timeout(SOON), Ok((x, false)));
+            assert_eq!(words.recv_timeout(SOON), Ok(Word::Frame));
+            assert_eq!(begins.recv_timeout(SOON), Ok((x, true)), "at rest");
+        }
+        assert!(!tracer.is_busy());
+        drop(tracer);
+        assert_eq!(words.recv_timeout(SOON), Ok(Word::Gone), "no pass became a frame");
+    }
+
+    #[test]
+    fn while_it_moves_nothing_is_refined() {
+        let (began, begins) = channel();
+        let render = move |_: &Job, film: &mut Film| {
+            began.send(film.samples()).expect("the test listens");
+            FrameStats { completed: true, ..FrameStats::default() }
+        };
+        let (tracer, _words) = start(render, CancelToken::default());
+        for step in 0..30 {
+            tracer.post(at_rest(4, step as f32));
+            assert_eq!(begins.recv_timeout(SOON), Ok(None));
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    #[test]
+    fn motion_that_asks_for_speed_does_not_wait_for_a_frame_at_rest() {
+        let (full, mut fast) = (job(4, 0.0), job(4, 1.0));
+        fast.settings.stride = 16;
+        assert_eq!(fast.patience(&full), Some(PATIENCE));
+        fast.lowering = Lowering { level: 1, scale: 0.7, ..Lowering::NONE };
+        assert_eq!(fast.patience(&full), Some(Duration::ZERO));
+        assert_eq!(full.patience(&fast), Some(PATIENCE));
+        assert_eq!(job(4, 2.0).patience(&full), None);
     }
 
     #[test]

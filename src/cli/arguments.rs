@@ -45,7 +45,15 @@ fn render() -> Command {
                     formats.join("\n")
                 )),
         )
-        .arg(switch("binary", "Write .ppm as raw bytes (P6), not text (P3)"));
+        .arg(switch("binary", "Write .ppm as raw bytes (P6), not text (P3)"))
+        .arg(
+            Arg::new("reference")
+                .long("reference")
+                .value_name("VISIBILITY")
+                .value_parser(["full"])
+                .requires("stats")
+                .help("Trace each frame once more, untimed, with a ray for every pixel; --stats tells the difference"),
+        );
     with_shared(command)
 }
 

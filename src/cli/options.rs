@@ -7,7 +7,7 @@ use glam::Vec3;
 use raywalk::picture::MAX_PIXELS;
 use raywalk::render::Planes;
 use raywalk::scene::Limits;
-use raywalk::settings::{PRESETS, ROWS, Settings};
+use raywalk::settings::{PRESETS, ROWS, Settings, Visibility};
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -43,6 +43,8 @@ pub struct Options {
     pub planes: Planes,
     /// File for the record of the run, or `-`.
     pub stats: Option<String>,
+    /// How the frames are found that the record compares with.
+    pub reference: Option<Visibility>,
     pub settings: Settings,
 }
 
@@ -93,6 +95,8 @@ impl Options {
             frames: asked.get_one("frames").cloned(),
             planes,
             stats: asked.get_one("stats").cloned(),
+            // Of `render` alone, which has one value for it.
+            reference: asked.try_contains_id("reference").is_ok_and(|given| given).then_some(Visibility::Full),
             settings: settings(asked, preset)?,
         })
     }
@@ -126,7 +130,7 @@ pub fn check_size(Size { width, height }: Size, limits: &Limits) -> Result<(), S
 mod tests {
     use super::super::command;
     use super::*;
-    use raywalk::settings::{Fill, Visibility};
+    use raywalk::settings::Fill;
 
     fn options(line: &[&str]) -> Result<Options, Failure> {
         let asked = command().try_get_matches_from(line).expect("it can be typed");

@@ -11,10 +11,10 @@ use clap::ArgMatches;
 use raywalk::math::simd::SimdToken;
 use raywalk::measure::record::Subject;
 use raywalk::measure::run::{WARM_UP_FRAMES, timed_frame};
-use raywalk::measure::{Record, Run};
+use raywalk::measure::{MotionMeter, Record, Run};
 use raywalk::picture::{PendingFile, WriteOptions};
-use raywalk::render::{Film, Scratch, thread_count};
-use raywalk::settings::Settings;
+use raywalk::render::{Film, Planes, Scratch, render_frame, thread_count};
+use raywalk::settings::{Settings, Visibility};
 use std::path::{Path, PathBuf};
 
 /// Renders what `asked` says.
@@ -58,18 +58,22 @@ pub fn render(
         }
     }
     let mut run = Run::default();
+    let mut reference = options.reference.map(|visibility| Reference::new(visibility, stage));
     let progress = Progress::new(frames.range.end - frames.range.start, options.reading.quiet);
     for number in frames.range.clone() {
         let film = tracer.trace(number, &mut run)?;
         if let Some(output) = &mut output {
             output.write(number, frames, film)?;
         }
+        if let Some(reference) = &mut reference {
+            tracer.compare(number, reference)?;
+        }
         progress.advance();
     }
     drop(progress);
     interrupt.check()?;
     match record {
-        Some(target) => target.write(&record_of(stage, &run)),
+        Some(target) => target.write(&record_of(stage, &run, reference.as_ref())),
         None => Ok(()),
     }
 }
@@ -93,9 +97,40 @@ impl Tracer<'_> {
         self.interrupt.check()?;
         if completed { Ok(&self.film) } else { Err(Failure::Interrupted) }
     }
+
+    /// Traces the reference of frame `number`, which was traced last, and measures the difference.
+    fn compare(&mut self, number: u64, reference: &mut Reference) -> Result<(), Failure> {
+        let camera = self.frames.camera(number, &self.stage.camera)?;
+        let Reference { settings, film, meter } = reference;
+        let stats = render_frame(&self.stage.loaded.scene, &camera, settings, &mut self.scratch, film);
+        self.interrupt.check()?;
+        if !stats.completed {
+            return Err(Failure::Interrupted);
+        }
+        meter.add(self.film.rgba(), film.rgba());
+        Ok(())
+    }
 }
 
-fn record_of(stage: &Stage, run: &Run) -> Record {
+/// What the frames of a run are measured against.
+struct Reference {
+    settings: Settings,
+    film: Film,
+    meter: MotionMeter,
+}
+
+impl Reference {
+    /// The run's own settings but for `visibility`.
+    fn new(visibility: Visibility, stage: &Stage) -> Self {
+        Self {
+            settings: Settings { visibility, ..stage.settings.clone() },
+            film: Film::new(stage.size.width, stage.size.height, Planes::default()),
+            meter: MotionMeter::default(),
+        }
+    }
+}
+
+fn record_of(stage: &Stage, run: &Run, reference: Option<&Reference>) -> Record {
     let build_ms = stage.loaded.scene.build_ms;
     let subject = Subject {
         scene: &stage.loaded.scene,
@@ -107,7 +142,7 @@ fn record_of(stage: &Stage, run: &Run) -> Record {
         threads: thread_count(stage.settings.threads),
         simd: SimdToken::new(stage.settings.simd).unwrap_or_else(SimdToken::best).name(),
     };
-    Record::new(subject, run)
+    Record::new(subject, run, reference.map(|reference| &reference.meter))
 }
 
 /// Where the record of the run goes.

@@ -18,7 +18,11 @@ const PICTURE: &str = "raywalk.png";
 
 /// Opens the window, or else renders one frame.
 pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
-    let options = Options::of(asked, Settings::balanced)?;
+    let mut options = Options::of(asked, Settings::balanced)?;
+    // A preset says nothing of it, and only a window can rest.
+    if asked.value_source("refine-at-rest").is_none() {
+        options.settings.refine_at_rest = true;
+    }
     output::check_planes(Some(Path::new(PICTURE)), options.planes)?;
     let frames = Frames::of(&options)?;
     let interrupt = Interrupt::listen()?;

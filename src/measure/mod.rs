@@ -6,10 +6,12 @@
 pub mod counts;
 pub mod difference;
 pub mod metric;
+pub mod motion;
 pub mod record;
 pub mod run;
 pub mod statistics;
 pub mod system;
 
+pub use motion::MotionMeter;
 pub use record::Record;
 pub use run::Run;

@@ -1,6 +1,7 @@
 //! The record of a run: what `--stats` writes, one JSON object.
 
 use super::counts::SceneCounts;
+use super::motion::{Motion, MotionMeter, RunError};
 use super::run::{CpuTime, Run};
 use super::statistics::Spread;
 use super::system::peak_rss_bytes;
@@ -51,10 +52,20 @@ pub struct Record {
     stages_ms: Value,
     shadow_cache: Value,
     certificates: Certificates,
+    #[serde(flatten)]
+    against_reference: Option<AgainstReference>,
     /// `null` where the system does not tell.
     peak_rss_bytes: Option<u64>,
     #[serde(flatten)]
     counts: SceneCounts,
+}
+
+/// How the run compares with its reference, where one was traced.
+#[derive(Debug, Serialize)]
+struct AgainstReference {
+    /// `null` for a run of one frame.
+    motion: Option<Motion>,
+    error: RunError,
 }
 
 /// What beams proved.
@@ -87,8 +98,8 @@ impl Certificates {
 }
 
 impl Record {
-    /// The record of `run`.
-    pub fn new(subject: Subject<'_>, run: &Run) -> Self {
+    /// The record of `run`, and of how it compares with its reference.
+    pub fn new(subject: Subject<'_>, run: &Run, reference: Option<&MotionMeter>) -> Self {
         let Subject { scene, settings, width, height, load_ms, build_ms, threads, simd } = subject;
         let total = run.total();
         Self {
@@ -109,6 +120,7 @@ impl Record {
             stages_ms: run.per_frame(&total.stages_ms),
             shadow_cache: run.per_frame(&total.shadow_cache),
             certificates: Certificates::of(run),
+            against_reference: reference.map(|meter| AgainstReference { motion: meter.motion(), error: meter.error() }),
             peak_rss_bytes: peak_rss_bytes(),
             counts: SceneCounts::of(scene),
         }

@@ -2,6 +2,7 @@
 //!
 //! Pixels are stored tile by tile, so that workers own disjoint tiles without locks or shared mutable memory.
 
+use super::accumulate::{Accumulated, Progress};
 use super::adaptive::{Centres, Refinement};
 use super::resolve::Encoder;
 use super::samples::{Colors, PACKET, pixel_at, sample_at};
@@ -47,6 +48,8 @@ pub(super) struct FilmTile {
     pub object: Vec<u32>,
     pub primitive: Vec<u32>,
     pub refinement: Refinement,
+    /// The samples of a film that gathers them from frame to frame.
+    pub accumulated: Option<Box<Accumulated>>,
 }
 
 impl FilmTile {
@@ -65,6 +68,7 @@ impl FilmTile {
             object: vec![u32::MAX; kept(planes.object)],
             primitive: vec![u32::MAX; kept(planes.primitive)],
             refinement: Refinement::default(),
+            accumulated: None,
         }
     }
 
@@ -107,6 +111,7 @@ pub struct Film {
     planes: Planes,
     pub(super) tiles: Vec<FilmTile>,
     rgba: Vec<u8>,
+    pub(super) progress: Option<Progress>,
 }
 
 impl Film {
@@ -116,7 +121,32 @@ impl Film {
         let (w, h) = (width as usize, height as usize);
         let starts = (0..h).step_by(TILE).flat_map(|y| (0..w).step_by(TILE).map(move |x| (x, y)));
         let tiles = starts.map(|(x, y)| FilmTile::new(x, y, TILE.min(w - x), TILE.min(h - y), planes)).collect();
-        Self { width, height, planes, tiles, rgba: vec![0; w * h * 4] }
+        Self { width, height, planes, tiles, rgba: vec![0; w * h * 4], progress: None }
+    }
+
+    /// A picture that gathers samples: each frame rendered into it, all of one view, adds one of the 16 of
+    /// `--supersample 16`, whatever the setting says, and shows the mean of those so far. The 16th gives the very bits of
+    /// that setting; a frame more, or one that was cancelled, begins anew. It keeps no planes.
+    pub fn accumulating(width: u32, height: u32) -> Self {
+        let mut film = Self::new(width, height, Planes::default());
+        film.tiles.iter_mut().for_each(|tile| tile.accumulated = Some(Box::default()));
+        film.start_over();
+        film
+    }
+
+    /// Forgets the samples of a picture that gathers them: the next frame may show another view.
+    pub fn start_over(&mut self) {
+        self.progress = self.tiles.iter().any(|tile| tile.accumulated.is_some()).then(Progress::default);
+    }
+
+    /// How many samples a pixel of a picture that gathers them has, up to 16; `None` for any other picture.
+    pub fn samples(&self) -> Option<u32> {
+        self.progress.map(Progress::samples)
+    }
+
+    /// Takes over another's 8-bit picture, of the same size, and nothing else of it.
+    pub fn copy_rgba(&mut self, other: &Self) {
+        self.rgba.copy_from_slice(&other.rgba);
     }
 
     /// Width in pixels.

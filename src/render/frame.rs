@@ -1,5 +1,6 @@
 //! The waist of the program: one frame from scene, camera and settings.
 
+use super::accumulate::Progress;
 use super::adaptive;
 use super::film::FilmTile;
 use super::plan::Plan;
@@ -159,6 +160,8 @@ pub(super) struct Frame<'a> {
     pub encoder: Encoder,
     /// What exposure multiplies light by.
     pub gain: f32,
+    /// Of a film that gathers samples: how far it came before this frame.
+    pub progress: Option<Progress>,
 }
 
 /// Renders one frame into `film`.
@@ -175,6 +178,9 @@ pub fn render_frame(
     film: &mut Film,
 ) -> FrameStats {
     let start = Instant::now();
+    // A film that gathers samples takes one a frame, however many the settings ask for.
+    let one_sample = Settings { supersample: Supersample::Off, ..settings.clone() };
+    let settings = if film.progress.is_some() { &one_sample } else { settings };
     let token = SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best);
     let Scratch { cancel, beam_margin, pool, tables, sphere_terms, around_eye, objects } = scratch;
     if tables.generation != Some(scene.generation) {
@@ -223,6 +229,7 @@ pub fn render_frame(
         keeps_normals: film.planes().normal || plan.trails,
         gain: libm::exp2f(settings.exposure),
         encoder: Encoder::new(settings),
+        progress: film.progress,
     };
 
     pool.for_each_tile(cancel, &mut film.tiles, |film_tile, worker| {
@@ -234,6 +241,8 @@ pub fn render_frame(
     }
 
     let mut stats = FrameStats { completed: !cancel.is_cancelled(), ..FrameStats::default() };
+    // What was cancelled has its sample in some tiles only.
+    film.progress = film.progress.map(|before| if stats.completed { before.next() } else { Progress::default() });
     for worker in &mut pool.workers {
         let worker = worker.get_mut().unwrap_or_else(PoisonError::into_inner);
         stats.add(&std::mem::take(&mut worker.stats));

@@ -2,9 +2,11 @@
 //!
 //! `frame` makes the plan and hands tiles to workers; `tile` runs one tile: `visibility` finds what each sample sees,
 //! then queue by queue `shade` adds local light and queues rays, `shadow`, `mirror` and `trace` trace them, `secondary`
-//! follows mirrors and glass; `resolve` encodes the result; `adaptive` gives pixels more samples where neighbours differ. All of it runs in lanes, a packet of rays at a time.
+//! follows mirrors and glass; `resolve` encodes the result. Then `adaptive` gives pixels more samples where neighbours
+//! differ. All of it runs in lanes, a packet of rays at a time.
 
 mod absorption;
+mod accumulate;
 mod adaptive;
 mod brdf;
 mod direct;

@@ -168,6 +168,22 @@ impl Colors {
         }
     }
 
+    /// Takes over other colours.
+    pub fn copy_from(&mut self, other: &Self) {
+        for (column, colors) in self.0.columns_mut().into_iter().zip(other.0.columns()) {
+            column.clone_from(colors);
+        }
+    }
+
+    /// Adds other colours, each multiplied by `factor`, sample by sample.
+    pub fn add_scaled(&mut self, other: &Self, factor: f32) {
+        for (sums, colors) in self.0.columns_mut().into_iter().zip(other.0.columns()) {
+            for (sum, color) in sums.iter_mut().zip(colors) {
+                *sum += color * factor;
+            }
+        }
+    }
+
     /// Multiplies every colour.
     pub fn scale(&mut self, factor: f32) {
         for column in self.0.columns_mut() {

@@ -1,5 +1,6 @@
 //! One tile: visibility, then queue after queue of its paths, then bytes. No recursion.
 
+use super::accumulate::{self, Progress};
 use super::extent::Lists;
 use super::film::FilmTile;
 use super::frame::Frame;
@@ -95,6 +96,14 @@ pub struct Pass {
     pub offset: [f32; 2],
 }
 
+impl Pass {
+    /// The same through another place of each pixel: the centre of a cell of a grid of `side` x `side`.
+    fn through(self, side: u32, [row, column]: [u32; 2]) -> Self {
+        let step = 1.0 / side as f32;
+        Self { offset: [(column as f32 + 0.5) * step, (row as f32 + 0.5) * step], ..self }
+    }
+}
+
 /// Renders one tile of the film.
 pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, tile: &mut FilmTile, worker: &mut Worker) {
     worker.begin_tile(frame);
@@ -108,6 +117,7 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, tile: &mut FilmTile, w
         offset: [0.5, 0.5],
     };
     match frame.settings.supersample {
+        _ if let Some(before) = frame.progress => worker.render_sample(simd, frame, &centre, before, tile),
         Supersample::Off => {
             visibility::render_pass(simd, frame, &centre, worker);
             std::mem::swap(&mut tile.color, &mut worker.color);
@@ -158,19 +168,33 @@ impl Worker {
         self.seen.resize(SAMPLES, Seen::NOTHING);
         self.sums.clear();
         let (pixels, certificates) = (self.stats.pixels, self.stats.certificates);
-        let step = 1.0 / side as f32;
         for row in 0..side {
             for column in 0..side {
-                let offset = [(column as f32 + 0.5) * step, (row as f32 + 0.5) * step];
                 // Each pixel counts once, by its last pass.
                 self.stats.pixels = pixels;
                 self.stats.certificates = certificates;
-                visibility::render_pass(simd, frame, &Pass { offset, ..*centre }, self);
+                visibility::render_pass(simd, frame, &centre.through(side, [row, column]), self);
                 self.sums.add_all(&self.color);
             }
         }
         self.sums.scale(1.0 / (side * side) as f32);
         std::mem::swap(&mut self.seen, &mut self.seen_at_centres);
+    }
+
+    /// Adds one sample to those that the tile gathers from frame to frame.
+    fn render_sample<S: Simd>(
+        &mut self,
+        simd: S,
+        frame: &Frame<'_>,
+        centre: &Pass,
+        before: Progress,
+        tile: &mut FilmTile,
+    ) {
+        visibility::render_pass(simd, frame, &centre.through(accumulate::SIDE, before.place()), self);
+        if let Some(accumulated) = &mut tile.accumulated {
+            accumulated.take(before, &mut self.color);
+            accumulated.mean(before.next(), &mut tile.color);
+        }
     }
 
     /// Shades the hits in `rays`, then everything that follows from them, adding to the samples' colours.

@@ -1,7 +1,7 @@
 //! The program as its users meet it: exit codes, files, and what is said where.
 
 use super::temporary::Folder;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -348,6 +348,34 @@ fn stats_go_to_a_file_as_well() {
     let stats: Value = serde_json::from_slice(&bench.read("run.json")).expect("JSON");
     assert_eq!(stats["frames"], 1);
     assert_eq!(bench.names(), ["a.png", "run.json", "scene.json"]);
+}
+
+#[test]
+fn a_reference_tells_what_flickers() {
+    let bench = Bench::new();
+    bench.write("scene.json", SCENE);
+    bench.write("walk.json", PATH);
+    let measured = |flags: &str| {
+        let line = format!("render scene.json --size 96x64 {flags} --reference full --stats -");
+        let stats = bench.json(&line);
+        (stats["motion"].clone(), stats["error"].clone())
+    };
+    let nothing = json!({ "excess_temporal_change": 0.0, "pops_mean": 0.0, "pops_max": 0, "frames": 5 });
+    let no_error = json!({ "rmse": 0.0, "max_abs": 0.0, "pixels_off": 0.0 });
+    assert_eq!(measured("--path walk.json"), (nothing.clone(), no_error.clone()), "exact");
+    let rough = "--visibility subsample --fill color --stride 16 --match-threshold 1";
+    let (motion, error) = measured(&format!("--path walk.json {rough}"));
+    assert!(motion["excess_temporal_change"].as_f64() > Some(0.01), "{motion}");
+    assert!(motion["pops_max"].as_f64() >= motion["pops_mean"].as_f64() && motion["pops_max"] != 0, "{motion}");
+    assert!(error["rmse"].as_f64() > Some(0.0) && error["max_abs"].as_f64() > Some(2.0 / 255.0), "{error}");
+    let (motion, error) = measured(&format!("--frames 0..5 {rough}"));
+    assert_eq!(motion, nothing, "a still camera");
+    assert_ne!(error, no_error);
+    assert_eq!(measured("").0, Value::Null, "one frame does not move");
+
+    let said = bench.refused(2, "render scene.json --reference full");
+    assert!(said.contains("--stats"), "{said}");
+    assert!(bench.json("render scene.json --stats -").get("motion").is_none());
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Integration tests, in one binary: one module a subject. What breaks methods by design is in `stability.rs`.
 
+mod accumulation;
 mod adaptive;
 mod adversary;
 mod blit;

@@ -3,12 +3,12 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use raywalk::app::history::History;
-use raywalk::app::overlay::{self, Change, Shown, View, theme};
+use raywalk::app::overlay::{self, Change, Showing, Shown, View, theme};
 use raywalk::geometry::Geometry;
 use raywalk::math::simd;
 use raywalk::render::FrameStats;
 use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene};
-use raywalk::settings::{Kind, PRESETS, ROWS, Settings, row};
+use raywalk::settings::{Kind, PRESETS, ROWS, Settings, Supersample, row};
 use std::time::{Duration, Instant};
 
 fn scene() -> Scene {
@@ -35,6 +35,7 @@ struct Panel {
     settings: Settings,
     history: History,
     shown: Shown,
+    showing: Showing,
     changes: Vec<Change>,
 }
 
@@ -42,7 +43,8 @@ impl Panel {
     fn new() -> Self {
         let settings = Settings::balanced();
         let shown = Shown::default();
-        Self { scene: scene(), settings, history: History::default(), shown, changes: Vec::new() }
+        let (history, showing) = (History::default(), Showing::AsSet);
+        Self { scene: scene(), settings, history, shown, showing, changes: Vec::new() }
     }
 
     fn show(&mut self, ui: &mut egui::Ui) {
@@ -53,6 +55,7 @@ impl Panel {
             history: &self.history,
             resting: false,
             size: (1280, 720),
+            showing: self.showing,
             speed: 1.5,
             fov: 60.0,
             sensitivity: 0.12,
@@ -189,6 +192,35 @@ fn the_status_line_says_rate_time_and_size() {
     harness.state_mut().shown.overlay = false;
     harness.run();
     assert!(harness.query_by_label_contains("1280x720").is_none(), "everything is hidden");
+}
+
+#[test]
+fn what_the_picture_is_stands_below_the_status_line() {
+    let sixteen = Settings { supersample: Supersample::Grid { side: 4 }, ..Settings::exact() };
+    for (showing, settings, words) in [
+        (Showing::AsSet, Settings::exact(), "as set: 1 sample"),
+        (Showing::AsSet, sixteen.clone(), "as set: supersample 16"),
+        (Showing::Moving { preset: Some("fast"), scale: 0.7 }, sixteen, "moving: fast, scale 0.7"),
+        (Showing::Moving { preset: Some("balanced"), scale: 1.0 }, Settings::exact(), "moving: balanced"),
+        (Showing::Moving { preset: None, scale: 0.5 }, Settings::fast(), "moving: scale 0.5"),
+        (Showing::Refined(9), Settings::exact(), "refined 9/16"),
+        (Showing::Refined(16), Settings::exact(), "at rest: 16 samples"),
+    ] {
+        let mut panel = Panel::new();
+        (panel.showing, panel.settings, panel.shown.panel) = (showing, settings, false);
+        panel.harness().get_by_label(words);
+    }
+}
+
+#[test]
+fn a_preset_keeps_what_is_the_windows_own() {
+    let mut panel = Panel::new();
+    let (refine_at_rest, target_fps) = (true, Some(30));
+    panel.settings = Settings { refine_at_rest, target_fps, ..Settings::balanced() };
+    let mut harness = panel.harness();
+    harness.get_by_label("exact").click();
+    harness.run();
+    assert_eq!(harness.state().settings, Settings { refine_at_rest, target_fps, ..Settings::exact() });
 }
 
 #[test]

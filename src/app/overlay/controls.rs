@@ -42,7 +42,10 @@ fn is_possible(row: &Row, value: &str, settings: &Settings) -> bool {
 /// The control of a row, and the value that was asked for, as it would be typed.
 fn control(ui: &mut Ui, row: &Row, value: &str, view: &View<'_>) -> (Response, Option<String>) {
     match &row.kind {
-        Kind::Choice([Choice { value: "on", .. }, Choice { value: "off", .. }]) => {
+        Kind::Choice(
+            [Choice { value: "on", .. }, Choice { value: "off", .. }]
+            | [Choice { value: "off", .. }, Choice { value: "on", .. }],
+        ) => {
             let mut on = value == "on";
             let response = ui.checkbox(&mut on, "");
             let wanted = response.changed().then(|| if on { "on" } else { "off" }.to_owned());
@@ -72,11 +75,15 @@ fn choice(ui: &mut Ui, row: &Row, choices: &[Choice], value: &str, settings: &Se
 }
 
 fn number(ui: &mut Ui, value: &str, min: f64, max: f64, integer: bool, view: &View<'_>) -> (Response, Option<String>) {
-    // The one value that is no number is the depth "scene".
-    let before = value.parse().unwrap_or_else(|_| f64::from(view.scene.render.max_depth));
+    let before = match value {
+        "off" => min,
+        // Else the one value that is no number is the depth "scene".
+        _ => value.parse().unwrap_or_else(|_| f64::from(view.scene.render.max_depth)),
+    };
     let mut after = before;
     let response = if integer && max - min > WIDEST_SLIDER {
-        ui.add(DragValue::new(&mut after).range(min..=max).speed(0.05).fixed_decimals(0))
+        let drag = DragValue::new(&mut after).range(min..=max).speed(0.05).fixed_decimals(0);
+        ui.add(if value == "off" { drag.custom_formatter(|_, _| "off".to_owned()) } else { drag })
     } else {
         let slider = Slider::new(&mut after, min..=max);
         // Ranges from zero are those of thresholds and weights, where the small values matter.

@@ -8,11 +8,12 @@ mod figures;
 mod graph;
 pub mod theme;
 
+use super::at_rest::SAMPLES;
 use super::history::History;
 use super::input::HELP;
 use crate::render::FrameStats;
 use crate::scene::Scene;
-use crate::settings::{PRESETS, Preset, Settings};
+use crate::settings::{PRESETS, Preset, Settings, row};
 use egui::{CollapsingHeader, RichText, Ui};
 
 /// Width of the panel's contents in points.
@@ -37,6 +38,8 @@ pub struct View<'a> {
     pub resting: bool,
     /// Size of the traced picture in pixels.
     pub size: (u32, u32),
+    /// What the picture is.
+    pub showing: Showing,
     /// Walking speed in metres a second.
     pub speed: f64,
     /// Vertical field of view in degrees.
@@ -45,6 +48,42 @@ pub struct View<'a> {
     pub sensitivity: f64,
     /// Mouse forward looks down.
     pub invert_look: bool,
+}
+
+/// What the picture is, against what the settings ask for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Showing {
+    /// As the settings say.
+    AsSet,
+    /// Lowered while moving.
+    Moving {
+        /// The preset in place of the settings.
+        preset: Option<&'static str>,
+        /// Edge of the traced picture as a share of the window's.
+        scale: f32,
+    },
+    /// At rest, with so many samples a pixel of 16.
+    Refined(u32),
+}
+
+impl Showing {
+    /// In words: "moving: fast, scale 0.7", "refined 9/16", "at rest: 16 samples".
+    fn words(self, settings: &Settings) -> String {
+        match self {
+            Self::AsSet if settings.supersample.rays() == 1 => "as set: 1 sample".to_owned(),
+            Self::AsSet => {
+                let value = row("supersample").map_or_else(String::new, |row| (row.get)(settings));
+                format!("as set: supersample {value}")
+            }
+            Self::Moving { preset, scale } => {
+                let scale = (scale < 1.0).then(|| format!("scale {scale}"));
+                let lowered: Vec<String> = preset.map(str::to_owned).into_iter().chain(scale).collect();
+                format!("moving: {}", lowered.join(", "))
+            }
+            Self::Refined(SAMPLES) => format!("at rest: {SAMPLES} samples"),
+            Self::Refined(samples) => format!("refined {samples}/{SAMPLES}"),
+        }
+    }
 }
 
 /// What of the overlay is shown.
@@ -118,10 +157,12 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
     changes
 }
 
-/// "62 fps | 14.2 ms | 1280x720", and the switch of the panel.
+/// "62 fps | 14.2 ms | 1280x720", the switch of the panel, and what the picture is.
 fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Change>) {
     ui.horizontal(|ui| {
+        let is_refining = matches!(view.showing, Showing::Refined(samples) if samples < SAMPLES);
         let rate = match view.history.rate() {
+            _ if view.resting && is_refining => "refining".to_owned(),
             _ if view.resting => "idle".to_owned(),
             Some(rate) if rate < 9.95 => format!("{rate:.1} fps"),
             Some(rate) => format!("{rate:.0} fps"),
@@ -138,6 +179,8 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
             }
         });
     });
+    ui.label(RichText::new(view.showing.words(view.settings)).small().color(theme::WEAK))
+        .on_hover_text("what the picture is; see refine-at-rest and target-fps");
 }
 
 fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
@@ -169,12 +212,12 @@ fn presets(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     });
 }
 
-/// The settings of a preset, as this scene is drawn by this machine.
+/// The settings of a preset, as this scene is drawn by this machine in this window.
 fn of_preset(preset: &Preset, view: &View<'_>) -> Settings {
-    let Settings { threads, simd, present, .. } = *view.settings;
+    let Settings { threads, simd, refine_at_rest, target_fps, present, .. } = *view.settings;
     // The depth "scene" and the scene's own number are the same.
     let depth = view.settings.depth.filter(|depth| *depth == view.scene.render.max_depth);
-    Settings { threads, simd, present, depth, ..(preset.settings)() }
+    Settings { threads, simd, refine_at_rest, target_fps, present, depth, ..(preset.settings)() }
 }
 
 fn scene(ui: &mut Ui, scene: &Scene) {

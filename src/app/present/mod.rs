@@ -65,7 +65,7 @@ pub enum Presenter {
     /// Textures joined by a shader.
     Blit(Box<(Blit, GpuOverlay)>),
     /// Memory joined by the CPU.
-    Direct(Direct),
+    Direct(Box<Direct>),
 }
 
 impl Presenter {
@@ -77,7 +77,7 @@ impl Presenter {
             Present::Direct => true,
         };
         if direct && let Some(direct) = Direct::new(gpu) {
-            return Self::Direct(direct);
+            return Self::Direct(Box::new(direct));
         }
         let blit = Blit::new(&gpu.device, gpu.format());
         Self::Blit(Box::new((blit, GpuOverlay::new(gpu))))
