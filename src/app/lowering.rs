@@ -26,8 +26,9 @@ impl Lowering {
 /// The chosen settings with what a preset says of approximations and samples. What kind of picture it is, and how the
 /// machine makes it, stays as chosen.
 fn with_preset(chosen: &Settings, preset: &Preset) -> Settings {
-    let Settings { visibility, stride, fill, match_threshold, supersample, min_weight, .. } = (preset.settings)();
-    Settings { visibility, stride, fill, match_threshold, supersample, min_weight, ..chosen.clone() }
+    let Settings { visibility, stride, fill, match_threshold, supersample, render_scale, min_weight, .. } =
+        (preset.settings)();
+    Settings { visibility, stride, fill, match_threshold, supersample, render_scale, min_weight, ..chosen.clone() }
 }
 
 /// The settings that `lowering` makes of the chosen ones.

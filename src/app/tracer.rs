@@ -441,7 +441,9 @@ mod tests {
             let frames = frames(&tracer, &words);
             let picture = |supersample| {
                 let mut film = Film::new(width, height, Planes::default());
-                let settings = Settings { supersample, ..settings.clone() };
+                // At rest nothing is enlarged.
+                let render_scale = if supersample == Supersample::Grid { side: 4 } { 1.0 } else { settings.render_scale };
+                let settings = Settings { supersample, render_scale, ..settings.clone() };
                 render_frame(&scene, &camera, &settings, &mut Scratch::new(), &mut film);
                 film
             };

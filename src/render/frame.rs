@@ -1,13 +1,13 @@
 //! The waist of the program: one frame from scene, camera and settings.
 
 use super::accumulate::Progress;
-use super::adaptive;
 use super::film::FilmTile;
 use super::plan::Plan;
 use super::resolve::Encoder;
 use super::tables::Tables;
 use super::tile::{self, Worker};
 use super::{Film, FrameStats};
+use super::{adaptive, enlarge};
 use crate::geometry::beam::Projection;
 use crate::geometry::{Block, SphereTerms};
 use crate::math::{SimdToken, dispatch};
@@ -50,7 +50,9 @@ pub struct Scratch {
     /// The share of the proven margins that beams use: 1. With less they may lose what is seen; that is for tests of
     /// whether such a loss would be noticed.
     pub beam_margin: f32,
-    pool: Option<Pool>,
+    pub(super) pool: Option<Pool>,
+    /// The traced picture, where that is smaller than the film.
+    pub(super) small: Option<Film>,
     tables: Tables,
     sphere_terms: Vec<Block<4>>,
     around_eye: Vec<u32>,
@@ -122,6 +124,7 @@ impl Scratch {
             sphere_terms: Vec::new(),
             around_eye: Vec::new(),
             objects: Vec::new(),
+            small: None,
         }
     }
 }
@@ -179,10 +182,13 @@ pub fn render_frame(
 ) -> FrameStats {
     let start = Instant::now();
     // A film that gathers samples takes one a frame, however many the settings ask for.
-    let one_sample = Settings { supersample: Supersample::Off, ..settings.clone() };
+    let one_sample = Settings { supersample: Supersample::Off, render_scale: 1.0, ..settings.clone() };
     let settings = if film.progress.is_some() { &one_sample } else { settings };
+    if settings.render_scale < 1.0 {
+        return enlarge::render_scaled(scene, camera, settings, scratch, film);
+    }
     let token = SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best);
-    let Scratch { cancel, beam_margin, pool, tables, sphere_terms, around_eye, objects } = scratch;
+    let Scratch { cancel, beam_margin, pool, tables, sphere_terms, around_eye, objects, .. } = scratch;
     if tables.generation != Some(scene.generation) {
         *tables = Tables::new(scene);
     }

@@ -10,6 +10,7 @@ mod accumulate;
 mod adaptive;
 mod brdf;
 mod direct;
+mod enlarge;
 mod extent;
 pub mod film;
 mod frame;

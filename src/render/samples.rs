@@ -108,6 +108,14 @@ impl Colors {
         self.0.load(simd, first)
     }
 
+    /// Sets the colours of samples from `first` on, given channel by channel.
+    #[inline(always)]
+    pub fn set_side_by_side(&mut self, first: usize, channels: [&[f32]; 3]) {
+        for (column, values) in self.0.columns_mut().into_iter().zip(channels) {
+            column[first..first + values.len()].copy_from_slice(values);
+        }
+    }
+
     /// Sets the colours of the samples that start at `first`.
     #[inline(always)]
     pub fn store<S: Simd>(&mut self, _: S, first: usize, colors: V3<S::f32s>) {

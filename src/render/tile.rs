@@ -1,6 +1,7 @@
 //! One tile: visibility, then queue after queue of its paths, then bytes. No recursion.
 
 use super::accumulate::{self, Progress};
+use super::enlarge::Enlargement;
 use super::extent::Lists;
 use super::film::FilmTile;
 use super::frame::Frame;
@@ -39,6 +40,7 @@ pub struct Worker {
     pub(super) order: visibility::Order,
     pub(super) levels: Option<Box<visibility::Levels>>,
     pub(super) smooth: visibility::Smooth,
+    pub(super) enlargement: Enlargement,
     /// In which colour the points of patches are shaded, while they are.
     pub(super) paint: Option<shade::Paint>,
     /// Set of the tile's cells whose pixels have the local light of what their eye rays hit.

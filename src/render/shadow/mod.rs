@@ -94,7 +94,7 @@ fn resolve_light<S: Simd>(simd: S, frame: &Frame<'_>, light: usize, queue: &mut 
 }
 
 /// Fewer rays are not worth a beam.
-const LEAST_RAYS: usize = 48;
+const LEAST_RAYS: usize = 16;
 
 /// Resolves shadow rays of one light that start close together.
 fn resolve_run<S: Simd>(

@@ -6,6 +6,7 @@
 //! Akimoto, Mase and Suenaga, "Pixel-selected ray tracing", IEEE CG&A 11(4), 1991, who interpolate what they did not
 //! prove); textures are looked up for every pixel.
 
+use super::order::Area;
 use super::{Worker, certified, note_seen};
 use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex};
 use crate::math::V3;
@@ -24,6 +25,9 @@ use fearless_simd::prelude::*;
 use glam::Vec3;
 use std::ops::Range;
 use std::time::Instant;
+
+/// Cells of a block.
+const CELLS_PER_BLOCK: usize = (BLOCK / CELL) * (BLOCK / CELL);
 
 /// Pixels of a cell.
 const PIXELS: usize = CELL * CELL;
@@ -118,32 +122,37 @@ fn paints(material: &FlatMaterial) -> &'static [Paint] {
     }
 }
 
+/// The primitive that all pixels of a whole cell see, if there is one.
+fn common_primitive(area: &Area, is_certain: bool, seen: &[PrimitiveIndex]) -> Option<PrimitiveIndex> {
+    // Packets must not reach into the next cell.
+    if area.pixels() < PIXELS || !area.start.is_multiple_of(MOST_LANES) {
+        return None;
+    }
+    let (&first, others) = seen[area.start..area.start + PIXELS].split_first()?;
+    let is_common = first != NO_PRIMITIVE && (is_certain || others.iter().all(|&other| other == first));
+    is_common.then_some(first)
+}
+
 impl Smooth {
-    /// Lists the cells whose pixels all see one surface that can be interpolated.
+    /// Lists the cells whose pixels all see one surface that can be interpolated, block by block and paint by paint.
     fn choose(&mut self, frame: &Frame<'_>, worker: &Worker) {
         self.patches.clear();
         self.groups.clear();
         let tables = &frame.tables;
-        let cells = &worker.order.cells;
-        let per_block = (BLOCK / CELL) * (BLOCK / CELL);
-        for (block, cells) in cells.chunks(per_block).enumerate() {
+        for (block, areas) in worker.order.cells.chunks(CELLS_PER_BLOCK).enumerate() {
+            let mut found = [None; CELLS_PER_BLOCK];
+            for (at, (area, found)) in areas.iter().zip(&mut found).enumerate() {
+                let cell = block * CELLS_PER_BLOCK + at;
+                let is_certain = worker.certain_cells >> cell & 1 == 1;
+                if let Some(primitive) = common_primitive(area, is_certain, &worker.rays.primitive) {
+                    let paints = paints(&tables.materials[tables.material_of[primitive as usize] as usize]);
+                    *found = Some((Patch { cell: cell as u8, start: area.start as u32, primitive }, paints));
+                }
+            }
             for paint in Paint::ALL {
                 let first = self.patches.len();
-                for (at, area) in cells.iter().enumerate() {
-                    if area.pixels() < PIXELS || !area.start.is_multiple_of(MOST_LANES) {
-                        continue;
-                    }
-                    let seen = &worker.rays.primitive[area.start..area.start + PIXELS];
-                    let primitive = seen[0];
-                    if primitive == NO_PRIMITIVE {
-                        continue;
-                    }
-                    let material = &tables.materials[tables.material_of[primitive as usize] as usize];
-                    if paints(material).contains(&paint) && seen.iter().all(|&other| other == primitive) {
-                        let cell = (block * per_block + at) as u8;
-                        self.patches.push(Patch { cell, start: area.start as u32, primitive });
-                    }
-                }
+                let painted = found.iter().flatten().filter(|(_, paints)| paints.contains(&paint));
+                self.patches.extend(painted.map(|(patch, _)| *patch));
                 if self.patches.len() > first {
                     self.groups.push((paint, first..self.patches.len()));
                 }
