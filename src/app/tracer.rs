@@ -442,7 +442,7 @@ mod tests {
             let picture = |supersample| {
                 let mut film = Film::new(width, height, Planes::default());
                 // At rest nothing is enlarged.
-                let render_scale = if supersample == Supersample::Grid { side: 4 } { 1.0 } else { settings.render_scale };
+                let render_scale = if supersample.rays() == 16 { 1.0 } else { settings.render_scale };
                 let settings = Settings { supersample, render_scale, ..settings.clone() };
                 render_frame(&scene, &camera, &settings, &mut Scratch::new(), &mut film);
                 film
