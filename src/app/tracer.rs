@@ -439,7 +439,7 @@ mod tests {
             let at_rest = Settings { refine_at_rest: true, ..settings.clone() };
             tracer.post(Job { camera, settings: at_rest, width, height, lowering: Lowering::NONE });
             let frames = frames(&tracer, &words);
-            let picture = |supersample| {
+            let picture = |supersample: Supersample| {
                 let mut film = Film::new(width, height, Planes::default());
                 // At rest nothing is enlarged.
                 let render_scale = if supersample.rays() == 16 { 1.0 } else { settings.render_scale };
