@@ -14,7 +14,7 @@ use crate::math::{SimdToken, dispatch};
 use crate::scene::camera::CameraFrame;
 use crate::scene::light::{Falloff, LightKind};
 use crate::scene::{Camera, Light, Scene};
-use crate::settings::{Settings, SphereCache, Supersample, Visibility};
+use crate::settings::{Settings, SphereCache, Supersample};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -229,7 +229,7 @@ pub fn render_frame(
         },
         around_eye,
         keeps_seen: film.planes().any()
-            || settings.visibility == Visibility::Subsample
+            || plan.trails
             || settings.supersample == Supersample::Adaptive,
         keeps_planes: film.planes().any(),
         keeps_normals: film.planes().normal || plan.trails,

@@ -233,50 +233,6 @@ impl RayQueue {
     }
 }
 
-impl RayQueue {
-    /// Appends all rays of another queue, with their hits. Both must hold rays from the eye.
-    pub fn append(&mut self, other: &Self) {
-        let (first, count) = (self.len, other.len);
-        if count == 0 {
-            return;
-        }
-        self.reserve(first + count);
-        (self.len, self.eye, self.unweighted) = (first + count, other.eye, other.unweighted);
-        for (to, from) in self.direction.columns_mut().into_iter().zip(other.direction.columns()) {
-            to[first..first + count].copy_from_slice(&from[..count]);
-        }
-        self.sample[first..first + count].copy_from_slice(&other.sample[..count]);
-        self.media[first..first + count].copy_from_slice(&other.media[..count]);
-        self.t[first..first + count].copy_from_slice(&other.t[..count]);
-        self.primitive[first..first + count].copy_from_slice(&other.primitive[..count]);
-    }
-
-    /// Marks the rays from `first` on as hitting nothing.
-    pub fn miss_from(&mut self, first: usize) {
-        let missed = first..self.len;
-        self.primitive[missed.clone()].fill(NO_PRIMITIVE);
-        self.t[missed].fill(f32::INFINITY);
-    }
-
-    /// Keeps the rays that `keep(sample, primitive)` wants, in order, looking only at those from `first` on. All must be
-    /// rays from the eye.
-    pub fn retain_from(&mut self, first: usize, mut keep: impl FnMut(u32, u32) -> bool) {
-        let mut to = first;
-        for at in first..self.len {
-            if keep(self.sample[at], self.primitive[at]) {
-                let direction = self.direction.get(at);
-                self.direction.set(to, direction);
-                self.sample[to] = self.sample[at];
-                self.media[to] = self.media[at];
-                self.t[to] = self.t[at];
-                self.primitive[to] = self.primitive[at];
-                to += 1;
-            }
-        }
-        self.len = to;
-    }
-}
-
 /// Rays that are shaded, and whose shadow rays are resolved, before the next ones are.
 pub const RUN: usize = 256;
 
