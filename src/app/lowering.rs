@@ -28,6 +28,8 @@ impl Lowering {
 fn with_preset(chosen: &Settings, preset: &Preset) -> Settings {
     let Settings { visibility, stride, fill, match_threshold, supersample, render_scale, min_weight, .. } =
         (preset.settings)();
+    // Of what was chosen, too, the picture is never larger.
+    let render_scale = render_scale.min(chosen.render_scale);
     Settings { visibility, stride, fill, match_threshold, supersample, render_scale, min_weight, ..chosen.clone() }
 }
 

@@ -176,7 +176,7 @@ fn setting(row: &'static Row) -> Arg {
         Kind::Number { min, max, promise, .. } => arg
             .value_name("N")
             .help(help.clone())
-            .allow_hyphen_values(*min < 0.0)
+            .allow_negative_numbers(true)
             .long_help(format!("{help}\n{min} to {max}: {promise}")),
     }
 }

@@ -141,7 +141,7 @@ mod tests {
     fn a_flag_beats_the_preset_in_either_order() {
         for line in [["--preset=fast", "--fill=hit"], ["--fill=hit", "--preset=fast"]] {
             let settings = options(&["raywalk", "render", line[0], line[1]]).expect("right").settings;
-            assert_eq!((settings.visibility, settings.fill), (Visibility::Subsample, Fill::Hit));
+            assert_eq!((settings.render_scale, settings.fill), (0.5, Fill::Hit));
         }
         assert_eq!(options(&["raywalk", "render"]).expect("right").settings, Settings::exact());
     }

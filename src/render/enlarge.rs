@@ -68,17 +68,18 @@ pub(super) fn render_scaled(
     let start = Instant::now();
     let (token, encoder) = (SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best), Encoder::new(&settings));
     let (whole, cancel) = ([film.width(), film.height()], scratch.cancel.clone());
-    if let Some(pool) = &scratch.pool {
+    if let Some(pool) = &mut scratch.pool {
         pool.for_each_tile(&cancel, &mut film.tiles, |tile, worker| {
+            let start = Instant::now();
             dispatch!(token, simd => enlarge(simd, &small, whole, tile, &mut worker.enlargement));
             dispatch!(token, simd => tile.encode(simd, &encoder));
+            worker.stats.stages_ms.resolve += milliseconds_since(start);
         });
         film.assemble(pool.threads.as_ref());
+        pool.collect(&mut stats);
     }
     scratch.small = Some(small);
-    let enlarged = milliseconds_since(start);
-    stats.stages_ms.resolve += enlarged;
-    stats.frame_ms += enlarged;
+    stats.frame_ms += milliseconds_since(start);
     stats
 }
 

@@ -103,6 +103,16 @@ impl Pool {
     }
 }
 
+impl Pool {
+    /// Adds up what the workers did since the last time.
+    pub(super) fn collect(&mut self, stats: &mut FrameStats) {
+        for worker in &mut self.workers {
+            let worker = worker.get_mut().unwrap_or_else(PoisonError::into_inner);
+            stats.add(&std::mem::take(&mut worker.stats));
+        }
+    }
+}
+
 /// How many threads a setting means on this machine: 0 all cores, n that many, -n all but n; at least 1.
 pub fn thread_count(asked: i32) -> usize {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -161,8 +171,6 @@ pub(super) struct Frame<'a> {
     /// Whether anybody asks for the normals of what samples see.
     pub keeps_normals: bool,
     pub encoder: Encoder,
-    /// What exposure multiplies light by.
-    pub gain: f32,
     /// Of a film that gathers samples: how far it came before this frame.
     pub progress: Option<Progress>,
 }
@@ -228,12 +236,9 @@ pub fn render_frame(
             SphereCache::Thesis => SphereTerms::Thesis(sphere_terms),
         },
         around_eye,
-        keeps_seen: film.planes().any()
-            || plan.trails
-            || settings.supersample == Supersample::Adaptive,
+        keeps_seen: film.planes().any() || plan.trails || settings.supersample == Supersample::Adaptive,
         keeps_planes: film.planes().any(),
         keeps_normals: film.planes().normal || plan.trails,
-        gain: libm::exp2f(settings.exposure),
         encoder: Encoder::new(settings),
         progress: film.progress,
     };
@@ -249,10 +254,7 @@ pub fn render_frame(
     let mut stats = FrameStats { completed: !cancel.is_cancelled(), ..FrameStats::default() };
     // What was cancelled has its sample in some tiles only.
     film.progress = film.progress.map(|before| if stats.completed { before.next() } else { Progress::default() });
-    for worker in &mut pool.workers {
-        let worker = worker.get_mut().unwrap_or_else(PoisonError::into_inner);
-        stats.add(&std::mem::take(&mut worker.stats));
-    }
+    pool.collect(&mut stats);
     stats.frame_ms = start.elapsed().as_secs_f64() * 1e3;
     stats
 }

@@ -11,7 +11,8 @@ use std::sync::LazyLock;
 #[derive(Clone, Copy)]
 pub struct Encoder {
     table: &'static SrgbTable,
-    gain: f32,
+    /// What exposure multiplies light by.
+    pub gain: f32,
     tone_map: ToneMap,
 }
 

@@ -16,7 +16,7 @@ fn scene(name: &str) -> (Scene, Camera) {
 }
 
 fn sixteen(scene: &Scene, camera: &Camera, settings: &Settings) -> Film {
-    let settings = Settings { supersample: Supersample::Grid { side: 4 }, ..settings.clone() };
+    let settings = Settings { supersample: Supersample::Grid { side: 4 }, render_scale: 1.0, ..settings.clone() };
     let mut film = Film::new(SIZE.0, SIZE.1, Planes::default());
     render_frame(scene, camera, &settings, &mut Scratch::new(), &mut film);
     film

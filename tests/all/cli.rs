@@ -363,7 +363,7 @@ fn a_reference_tells_what_flickers() {
     let nothing = json!({ "excess_temporal_change": 0.0, "pops_mean": 0.0, "pops_max": 0, "frames": 5 });
     let no_error = json!({ "rmse": 0.0, "max_abs": 0.0, "pixels_off": 0.0 });
     assert_eq!(measured("--path walk.json"), (nothing.clone(), no_error.clone()), "exact");
-    let rough = "--visibility subsample --fill hit --stride 16";
+    let rough = "--render-scale 0.25";
     let (motion, error) = measured(&format!("--path walk.json {rough}"));
     assert!(motion["excess_temporal_change"].as_f64() > Some(0.01), "{motion}");
     assert!(motion["pops_max"].as_f64() >= motion["pops_mean"].as_f64() && motion["pops_max"] != 0, "{motion}");

@@ -3,10 +3,11 @@
 use crate::picture_bits::{PictureBits, render};
 use crate::random::Random;
 use crate::stress;
+use crate::temporary::load_text;
 use raywalk::math::simd::is_available;
 use raywalk::render::Film;
 use raywalk::scene::{LoadOptions, Scene, load};
-use raywalk::settings::{Fill, Settings, SimdLevel};
+use raywalk::settings::{Fill, Settings, SimdLevel, ToneMap};
 use std::path::Path;
 
 /// Pixels that are interpolated lie closer together the larger the picture.
@@ -44,6 +45,33 @@ fn nearly_all_values_are_near_the_exact_ones() {
             let share = share_off(&exact, &render(&scene, camera, &interpolated(), SIZE));
             assert!(share <= MOST, "{}, camera {number}: {:.3} % are off", scene.name, share * 100.0);
         }
+    }
+}
+
+/// Light far above 1, which a dark texture or a tone curve brings back into sight.
+fn dazzling() -> Scene {
+    load_text(
+        r##"{ "version": 1, "camera": { "position": [0, 1.5, 5], "look_at": [0, 0.5, 0], "fov": 50 },
+              "textures": { "coal": { "checker": [[0.02, 0.02, 0.02], [0.05, 0.04, 0.03]], "size": 0.7 } },
+              "materials": {
+                "coal": { "color": { "texture": "coal" }, "specular": 0.5, "shininess": 80 },
+                "brass": { "color": [0.8, 0.6, 0.2], "specular": 1, "shininess": 200 } },
+              "lights": [ { "type": "point", "position": [1, 2, 2], "intensity": 30, "falloff": "inverse_square" },
+                          { "type": "directional", "direction": [-1, -1, -1], "intensity": 3 } ],
+              "objects": [ { "type": "plane", "point": [0, 0, 0], "normal": [0, 1, 0], "material": "coal" },
+                           { "type": "sphere", "center": [0, 1, 0], "radius": 1, "material": "brass" } ] }"##,
+    )
+    .unwrap()
+}
+
+#[test]
+fn bright_light_is_near_the_exact_one_too() {
+    let scene = dazzling();
+    let camera = &scene.cameras[0].camera;
+    for tone_map in [ToneMap::None, ToneMap::Neutral] {
+        let exact = render(&scene, camera, &Settings { tone_map, ..Settings::exact() }, SIZE);
+        let share = share_off(&exact, &render(&scene, camera, &Settings { tone_map, ..interpolated() }, SIZE));
+        assert!(share <= MOST, "{tone_map:?}: {:.3} % are off", share * 100.0);
     }
 }
 

@@ -181,6 +181,47 @@ fn shadows<S: Simd>(simd: S, case: &Case, random: &mut Random) -> (usize, usize)
     (blocked, wrong)
 }
 
+/// A cone, or a cylinder, with balls beyond it, seen along its axis but for rounding.
+fn along_the_axis(random: &mut Random, parallel: bool) -> Case {
+    let (axis, length) = (random.direction(), random.within(0.5, 4.0));
+    let base = random.point() * 3.0;
+    let radius_base = random.within(0.2, 1.0);
+    let radius_top = if random.within(0.0, 1.0) < 0.5 { radius_base } else { random.within(0.0, 1.0) };
+    let mut shapes = vec![Shape::Cone { base, top: base + axis * length, radius_base, radius_top }];
+    for _ in 0..20 {
+        let center = base + axis * (length + random.within(0.5, 2.0)) + random.point();
+        shapes.push(Shape::Sphere { center, radius: random.within(0.05, 0.3) });
+    }
+    let parts = (0..).zip(shapes).map(|(object, shape)| Part {
+        shape,
+        id: PrimitiveId { object, primitive: 0 },
+        attributes: None,
+    });
+    let geometry = Geometry::build(parts.collect());
+    let off = if random.within(0.0, 1.0) < 0.5 { 0.0 } else { 10_f32.powf(random.within(-8.0, -2.0)) };
+    let apex = base - axis * random.within(0.5, 10.0) + random.point() * off;
+    let right = axis.any_orthonormal_vector();
+    let reach = geometry.reach().max(16.0);
+    let projection = Projection::new(apex, [right, right.cross(axis), axis], parallel, reach, 1.0);
+    let size = 10_f32.powf(random.within(-3.0, -0.5));
+    let [x, y] = [(); 2].map(|()| random.within(-0.3, 0.3) - size / 2.0);
+    Case { geometry, projection, x: [x, x + size], y: [y, y + size] }
+}
+
+/// Nothing is hidden by what lies along the rays.
+#[test]
+fn cones_seen_along_their_axes_hide_nothing_that_is_seen() {
+    let mut random = Random(SplitMix64(13));
+    for number in 0..3000 {
+        let case = along_the_axis(&mut random, false);
+        let (_, wrong) = dispatch!(SimdToken::best(), simd => closest(simd, &case, &mut random));
+        assert_eq!(wrong, 0, "case {number}");
+        let case = along_the_axis(&mut random, true);
+        let (_, wrong) = dispatch!(SimdToken::best(), simd => shadows(simd, &case, &mut random));
+        assert_eq!(wrong, 0, "parallel, case {number}");
+    }
+}
+
 /// What a beam says of shadow rays is what they say themselves, of point lights and of directional ones.
 #[test]
 fn verdicts_are_those_of_the_rays() {

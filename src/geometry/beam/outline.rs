@@ -518,7 +518,8 @@ impl Outline<9, CONE> for Cone {
     #[inline(always)]
     fn covers<S: Simd, F: Lanes<S>>(outline: &[F; CONE], beam: &Beam<'_>) -> F::Mask {
         // A ray that is beside the wall, at a height within the cone's, and then inside it, at such a height, has met the
-        // wall in between. Both sets of rays are convex: those through a strip beside it, and through its axial section.
+        // wall in between. Both sets of rays are convex: those through a strip of a plane between apex and cone, and those
+        // through the section of the cone by a plane along its axis.
         let simd = outline[0].token();
         let section = Section::new(outline, beam);
         let margin = beam.projection.slack * CERTAIN;
@@ -575,9 +576,12 @@ struct Section<F> {
     normal: V3<F>,
     /// In the plane, across the axis.
     across: V3<F>,
-    /// How far in front of the plane the apex lies; infinite in parallel projection.
+    /// How far in front of the plane the apex lies; infinite in parallel projection, 0 where rays come along the axis.
     height: F,
 }
+
+/// Nearer to the axis (sine of the angle between it and the way from the apex), what lies across is lost in rounding.
+const LEAST_SINE: f32 = 1.0 / 16.0;
 
 impl<F> Section<F> {
     #[inline(always)]
@@ -594,8 +598,11 @@ impl<F> Section<F> {
         let axis = along.scale(F::splat(simd, 1.0) / half_height);
         let parallel = beam.projection.parallel;
         let view = if parallel { V3::splat(simd, Vec3::Z) } else { middle };
-        let normal = (view - axis.scale(view.dot(axis))).normalize();
+        let aside = view - axis.scale(view.dot(axis));
+        let is_aside = aside.dot(aside).simd_gt(view.dot(view) * (LEAST_SINE * LEAST_SINE));
+        let normal = aside.normalize();
         let height = if parallel { F::splat(simd, f32::INFINITY) } else { normal.dot(middle) };
+        let height = is_aside.select(height, F::splat(simd, 0.0));
         // As the outline has them, ends are larger than they are.
         let slack = beam.projection.slack * 2.0;
         let radius = [radius - slack, other_radius - slack];

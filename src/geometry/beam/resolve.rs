@@ -55,6 +55,11 @@ macro_rules! define_resolve {
         }
 
         impl Candidates {
+            /// Whether `primitive` is the only candidate.
+            pub fn are_only(&self, primitive: PrimitiveIndex) -> bool {
+                self.len() == 1 $(&& (0..self.$blocks.len()).all(|at| self.$blocks.member(at).index == primitive))+
+            }
+
             /// Whether, by the look of their outlines, no ray can hit any candidate but the one that all of them leave,
             /// nor can any between the rays.
             #[inline(always)]

@@ -2,7 +2,7 @@
 
 use super::verdict::{Judge, Verdict};
 use crate::geometry::beam::Candidates;
-use crate::geometry::{NO_PRIMITIVE, Search};
+use crate::geometry::{Geometry, NO_PRIMITIVE, Search};
 use crate::math::V3;
 use crate::render::extent::Lists;
 use crate::render::frame::Frame;
@@ -29,7 +29,8 @@ pub(in crate::render) fn settle<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mu
     for (light, queue) in frame.lights.iter().zip(&mut shadows) {
         if queue.len() > 0 {
             queue.pad();
-            Settlement { light: light.kind, queue, lists: &mut lists, worker, holds }.settle(simd, frame);
+            let geometry = &frame.scene.geometry;
+            Settlement { light: light.kind, geometry, queue, lists: &mut lists, worker, holds }.settle(simd, frame);
         }
         queue.clear();
     }
@@ -41,6 +42,7 @@ pub(in crate::render) fn settle<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mu
 /// What it takes to settle the shadow rays of one light.
 struct Settlement<'a> {
     light: LightKind,
+    geometry: &'a Geometry,
     queue: &'a ShadowQueue,
     lists: &'a mut Lists,
     worker: &'a mut Worker,
@@ -105,7 +107,7 @@ impl Settlement<'_> {
         let Lists { whole, part } = &mut *self.lists;
         match judge.judge_part(simd, self.queue, own.clone(), whole, part) {
             // The beam is a rectangle around the patch: its corners know more.
-            Verdict::Listed if lie_beside(simd, part, judge, self.queue, own) => Verdict::Lit,
+            Verdict::Listed if lie_beside(simd, self.geometry, part, judge, self.queue, own) => Verdict::Lit,
             verdict => verdict,
         }
     }
@@ -131,6 +133,7 @@ const LANES: usize = 8;
 /// Whether no candidate can be in the way of a patch, by the rays to its points.
 fn lie_beside<S: Simd>(
     simd: S,
+    geometry: &Geometry,
     candidates: &Candidates,
     judge: &Judge<'_>,
     queue: &ShadowQueue,
@@ -147,6 +150,10 @@ fn lie_beside<S: Simd>(
                 if queue.source[at] != source {
                     source = NO_PRIMITIVE;
                 }
+            }
+            // Rays to a curved patch do not end on a plane: of it only the patch's own surface is known to be no hindrance.
+            if !geometry.slots.get(source as usize).is_some_and(|slot| slot.kind.is_flat()) {
+                return candidates.are_only(source);
             }
             candidates.lie_beside(simd, &judge.points(V3::<f32x8<S>>::load(simd, &x, &y, &z)), source)
         },

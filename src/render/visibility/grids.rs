@@ -56,6 +56,9 @@ fn queue_grids<S: Simd>(simd: S, frame: &Frame<'_>, corner: [usize; 2], pixels: 
         }
     }
     aim(simd, frame, [0.0; 2], 0, rays);
+    if frame.plan.trails {
+        worker.trails.restart(&worker.rays);
+    }
 }
 
 /// Finds what the grids' rays hit: a beam lists it for the pixels of a cell, each pixel's beam sifts that.

@@ -163,7 +163,7 @@ impl Smooth {
     /// Shades the points of all patches; tells which may be interpolated.
     fn shade<S: Simd>(&mut self, simd: S, frame: &Frame<'_>, worker: &mut Worker) {
         self.holds.clear();
-        self.holds.extend(self.patches.iter().map(|patch| is_level(frame, patch, &worker.rays)));
+        self.holds.extend(self.patches.iter().map(|patch| is_flat_enough(frame, patch, &worker.rays)));
         self.colors.prepare();
         std::mem::swap(&mut worker.rays, &mut self.rays);
         std::mem::swap(&mut worker.color, &mut self.colors);
@@ -216,7 +216,7 @@ impl Smooth {
 }
 
 /// Whether a patch's surface is flat enough for the light in its middle to tell of all of it.
-fn is_level(frame: &Frame<'_>, patch: &Patch, rays: &RayQueue) -> bool {
+fn is_flat_enough(frame: &Frame<'_>, patch: &Patch, rays: &RayQueue) -> bool {
     if frame.scene.geometry.slots[patch.primitive as usize].kind.is_flat() {
         return true;
     }
@@ -244,11 +244,12 @@ impl Blend {
         Self { parts: [a, b - a, c - a, a - b - c + d], middle: color(4) }
     }
 
-    /// Whether the middle's own light is near enough what is interpolated.
+    /// Whether the middle's own light is near enough what is interpolated; light above 1, too, which a texture or a tone
+    /// curve may darken.
     fn is_smooth(&self, frame: &Frame<'_>) -> bool {
         let [a, b, c, d] = self.parts;
         let found = a + b * MIDDLE + c * MIDDLE + d * (MIDDLE * MIDDLE);
-        let encoded = |light: Vec3| (light * frame.gain).max(Vec3::ZERO).map(f32::sqrt).min(Vec3::ONE);
+        let encoded = |light: Vec3| (light * frame.encoder.gain).max(Vec3::ZERO).map(f32::sqrt);
         (encoded(found) - encoded(self.middle)).abs().max_element() <= TOLERANCE
     }
 

@@ -224,7 +224,8 @@ fn corners_match(corners: [usize; 4], worker: &Worker, threshold: f32) -> bool {
     }
     let normal = Vec3::from(seen[first].normal);
     let turned = |&corner: &usize| Vec3::from(seen[corner].normal).dot(normal) < LEAST_COSINE;
-    (primitive == NO_PRIMITIVE || !corners.iter().any(turned)) && colors_match(corners.map(|at| color.get(at)), threshold)
+    (primitive == NO_PRIMITIVE || !corners.iter().any(turned))
+        && colors_match(corners.map(|at| color.get(at)), threshold)
 }
 
 /// Whether no channel of the corners' colours differs by more than the threshold.
