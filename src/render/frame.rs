@@ -222,9 +222,7 @@ pub fn render_frame(
             SphereCache::Thesis => SphereTerms::Thesis(sphere_terms),
         },
         around_eye,
-        keeps_seen: film.planes().any()
-            || plan.trails
-            || settings.supersample == Supersample::Adaptive,
+        keeps_seen: film.planes().any() || plan.trails || settings.supersample == Supersample::Adaptive,
         keeps_planes: film.planes().any(),
         keeps_normals: film.planes().normal || plan.trails,
         gain: libm::exp2f(settings.exposure),
