@@ -64,6 +64,9 @@ impl Plan {
         let refractions = settings.refractions && depth > 1 && !tables.opaque.is_empty();
         let reflections = settings.reflections && depth > 1 && tables.materials.iter().any(|m| m.secondary);
         let beams = settings.visibility == Visibility::Certified;
+        // Whatever found the hits: shaded in the tile's order, they and what follows from them lie close together. Corners
+        // of cells that are shaded level by level do not, and gain nothing.
+        let secondary_beams = beams || settings.visibility == Visibility::Subsample && settings.fill == Fill::Hit;
         // A light at the eye casts no shadow that the eye sees itself, but mirrors and glass show them.
         let shadows = settings.shadows && (!scene.headlight || reflections || refractions);
         Self {
@@ -71,10 +74,10 @@ impl Plan {
             beams,
             sphere_cache: if has(PrimitiveKind::Sphere) { settings.sphere_cache } else { SphereCache::Off },
             shadows,
-            shadow_beams: beams && shadows && scene.geometry.len() > FEW_PRIMITIVES,
+            shadow_beams: secondary_beams && shadows && scene.geometry.len() > FEW_PRIMITIVES,
             coloured_shadows: !tables.opaque.is_empty(),
             reflections,
-            flat_mirrors: beams && reflections && tables.flat_mirrors,
+            flat_mirrors: secondary_beams && reflections && tables.flat_mirrors,
             refractions,
             media: !tables.transparent_bodies.is_empty(),
             absorption: tables.transparent_bodies.iter().any(|&object| absorbs(object)),
@@ -131,7 +134,7 @@ impl Plan {
             say(
                 self.shadow_beams,
                 "shadow beams: on, a light is asked for many rays at once whether they arrive".to_owned(),
-                "shadow beams: off, there are no shadows, too few primitives, or beams were switched off",
+                "shadow beams: off, there are no shadows, too few primitives, or every ray goes its own way",
             ),
             say(
                 self.coloured_shadows,
@@ -146,7 +149,7 @@ impl Plan {
             say(
                 self.flat_mirrors,
                 "flat mirrors: on, blocks of what they show are certified from the mirrored eye".to_owned(),
-                "flat mirrors: off, nothing flat mirrors (or visibility is not certified)",
+                "flat mirrors: off, nothing flat mirrors (or every ray goes its own way)",
             ),
             say(
                 self.refractions,

@@ -11,7 +11,7 @@ use super::samples::{Colors, SAMPLES, sample_at};
 use super::trail::Trails;
 use super::{FrameStats, mirror, shade, shadow, trace, visibility};
 use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex, Stack};
-use crate::settings::{Supersample, Visibility};
+use crate::settings::Supersample;
 use fearless_simd::Simd;
 use std::time::Instant;
 
@@ -237,8 +237,8 @@ impl Worker {
         let mut last = Instant::now();
         shade::begin(simd, frame, self);
         let rays = self.rays.len();
-        // Rays without certificates gain nothing from being close together, and would leave packets not full.
-        let run = if frame.settings.visibility == Visibility::Certified { RUN } else { rays.max(1) };
+        // Rays without beams gain nothing from being close together, and would leave packets not full.
+        let run = if frame.plan.beams || frame.plan.shadow_beams { RUN } else { rays.max(1) };
         for first in (0..rays).step_by(run) {
             shade::shade(simd, frame, level, first..(first + run).min(rays), self);
             if self.shadows.iter().all(|queue| queue.len() == 0) {

@@ -49,7 +49,7 @@ impl Level {
     /// The samples of a cell's corners: left-top, right-top, left-bottom and right-bottom.
     fn corners(&self, cell: Cell) -> [usize; 4] {
         let (Cell { left, top }, [right, bottom]) = (cell, self.far(cell));
-        [[left, top], [right, top], [left, bottom], [right, bottom]].map(sample_of)
+        [sample_of([left, top]), sample_of([right, top]), sample_of([left, bottom]), sample_of([right, bottom])]
     }
 
     /// The columns of the tile's pixels that belong to a cell.
@@ -75,6 +75,7 @@ impl Level {
 }
 
 /// The sample of a pixel of the tile, or of the border.
+#[inline(always)]
 fn sample_of([x, y]: [u16; 2]) -> usize {
     sample_at(x.into(), y.into()) as usize
 }
@@ -155,11 +156,10 @@ impl Cells {
         for &cell in &level.cells {
             let (Cell { left, top }, [right, bottom]) = (cell, level.far(cell));
             list([left, top]);
-            if level.size == 1 {
-                continue;
-            }
-            let rightmost = far || left + level.size >= level.width;
-            let lowest = far || top + level.size >= level.height;
+            // Single pixels have nothing between their corners.
+            let inside = level.size > 1;
+            let rightmost = far || inside && left + level.size >= level.width;
+            let lowest = far || inside && top + level.size >= level.height;
             if rightmost {
                 list([right, top]);
             }
@@ -224,8 +224,14 @@ fn corners_match(corners: [usize; 4], worker: &Worker, threshold: f32) -> bool {
     }
     let normal = Vec3::from(seen[first].normal);
     let turned = |&corner: &usize| Vec3::from(seen[corner].normal).dot(normal) < LEAST_COSINE;
-    (primitive == NO_PRIMITIVE || !corners.iter().any(turned))
-        && colors_match(corners.map(|at| color.get(at)), threshold)
+    (primitive == NO_PRIMITIVE || !others.iter().any(turned))
+        && colors_match(each(corners, |at| color.get(at)), threshold)
+}
+
+/// What `at` says of each corner. An array's own `map` is not inlined.
+#[inline(always)]
+fn each<T>([a, b, c, d]: [usize; 4], at: impl Fn(usize) -> T) -> [T; 4] {
+    [at(a), at(b), at(c), at(d)]
 }
 
 /// Whether no channel of the corners' colours differs by more than the threshold.
@@ -235,6 +241,7 @@ fn colors_match([a, b, c, d]: [Vec3; 4], threshold: f32) -> bool {
 }
 
 /// Interpolates between the corners of a cell.
+#[inline(always)]
 fn interpolate<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
@@ -244,9 +251,9 @@ fn interpolate<S: Simd>(
     worker: &mut Worker,
 ) {
     let Worker { color, seen, trails, .. } = worker;
-    let colors = corners.map(|corner| color.get(corner));
-    let views = corners.map(|corner| seen[corner]);
-    let normals = views.map(|view| Vec3::from(view.normal));
+    let colors = each(corners, |corner| color.get(corner));
+    let views = each(corners, |corner| seen[corner]);
+    let normals = each(corners, |corner| Vec3::from(seen[corner].normal));
     let (Cell { left, top }, [right, bottom]) = (cell, level.far(cell));
     let step = |from: u16, to: u16| 1.0 / f32::from((to - from).max(1));
     let steps = [step(left, right), step(top, bottom)];
@@ -271,7 +278,7 @@ fn interpolate<S: Simd>(
             if frame.keeps_planes {
                 seen.t = match seen.primitive {
                     NO_PRIMITIVE => f32::INFINITY,
-                    _ => bilinear(views.map(|view| view.t), u, v),
+                    _ => bilinear([views[0].t, views[1].t, views[2].t, views[3].t], u, v),
                 };
             }
         }
