@@ -1,15 +1,23 @@
-//! How fast and how true: error metrics, difference pictures, timed runs and their records.
+//! How fast and how true: error metrics, difference pictures, timed runs and their records; benches.
+//!
+//! A bench goes `sweep` (what is measured) -> `bench` (measuring) -> `records` (on disk) -> `chart` and `page` (drawn
+//! from the records alone).
 //!
 //! Architecture invariant: nothing here changes a frame; it only calls [`render_frame`](crate::render::render_frame)
 //! and looks at what comes back.
 
+pub mod bench;
 pub mod counts;
 pub mod difference;
 pub mod metric;
 pub mod record;
+pub mod records;
 pub mod run;
+pub mod stability;
 pub mod statistics;
+pub mod sweep;
 pub mod system;
+pub mod thesis;
 
 pub use record::Record;
 pub use run::Run;

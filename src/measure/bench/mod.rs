@@ -1,0 +1,129 @@
+//! Runs the jobs of a sweep and keeps the records: what was measured before is not measured again.
+
+mod comparison;
+mod judge;
+mod walk;
+mod watch;
+
+use super::records::{Key, Records, RecordsError, Row};
+use super::sweep::{Job, Method, View, changed_flags};
+use crate::picture::PictureError;
+use crate::render::{CancelToken, Film, FrameStats, Planes, Scratch, render_frame};
+use crate::scene::{Camera, Scene};
+use crate::settings::Settings;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+use watch::Watch;
+
+/// Why a bench ended early. The text is one line.
+#[derive(Debug, thiserror::Error)]
+pub enum BenchError {
+    /// It was asked to stop.
+    #[error("interrupted; what was measured is kept, and the same command goes on from there")]
+    Interrupted,
+    /// Records could not be read or written.
+    #[error(transparent)]
+    Records(#[from] RecordsError),
+    /// A picture could not be written.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+}
+
+/// Who is told how far a bench has come.
+pub trait Listener {
+    /// `done` steps of all jobs are behind it, and this is in work.
+    fn at(&self, done: u64, what: &str);
+}
+
+/// A bench at work.
+pub struct Bench<'a> {
+    folder: PathBuf,
+    /// What was measured so far.
+    pub records: Records,
+    listener: &'a dyn Listener,
+    watch: Watch,
+    /// One for each number of threads, so that no pool is made anew at each change of method.
+    scratches: BTreeMap<i32, Scratch>,
+    done: u64,
+}
+
+impl<'a> Bench<'a> {
+    /// Goes on with `records` of `folder` until `stop` is cancelled.
+    pub fn new(folder: PathBuf, records: Records, stop: CancelToken, listener: &'a dyn Listener) -> Self {
+        Self { folder, records, listener, watch: Watch::new(stop), scratches: BTreeMap::new(), done: 0 }
+    }
+
+    /// Does what is left of `jobs`.
+    ///
+    /// # Errors
+    /// [`BenchError`]; the records on disk hold all that was measured until then.
+    pub fn run(&mut self, jobs: &[Job]) -> Result<(), BenchError> {
+        self.records.save(&self.folder)?;
+        for job in jobs {
+            let end = self.done + job.steps();
+            self.listener.at(self.done, job.scene_name());
+            match job {
+                Job::Compare(job) => self.compare(job)?,
+                Job::Walk(job) => self.walk(job)?,
+            }
+            self.records.save_csv(&self.folder)?;
+            self.done = end;
+            self.listener.at(self.done, job.scene_name());
+        }
+        Ok(())
+    }
+
+    /// Renders one frame; `None` where it took longer than `longest` and was cut off.
+    fn render(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        settings: &Settings,
+        film: &mut Film,
+        longest: Option<Duration>,
+    ) -> Result<Option<FrameStats>, BenchError> {
+        let scratch = self.scratches.entry(settings.threads).or_default();
+        scratch.cancel = self.watch.token();
+        self.watch.start(longest.map(|longest| Instant::now() + longest));
+        let stats = render_frame(scene, camera, settings, scratch, film);
+        self.watch.end();
+        self.check()?;
+        Ok(stats.completed.then_some(stats))
+    }
+
+    /// Ends the bench if that was asked for.
+    fn check(&self) -> Result<(), BenchError> {
+        if self.watch.stop.is_cancelled() { Err(BenchError::Interrupted) } else { Ok(()) }
+    }
+
+    fn save(&self) -> Result<(), BenchError> {
+        Ok(self.records.save(&self.folder)?)
+    }
+}
+
+/// A film without planes.
+fn film((width, height): (u32, u32)) -> Film {
+    Film::new(width, height, Planes::default())
+}
+
+/// A row of which nothing is known yet.
+fn new_row(key: Key, view: &View, method: &Method) -> Row {
+    Row {
+        key,
+        family: method.family.to_owned(),
+        flags: changed_flags(&method.settings),
+        primitives: view.scene.geometry.len() as u64,
+        complete: false,
+        frame_ms: Default::default(),
+        cpu_ms: Default::default(),
+        cut_off_ms: None,
+        stages_ms: BTreeMap::new(),
+        rays: BTreeMap::new(),
+        pixels: BTreeMap::new(),
+        error: BTreeMap::new(),
+        frames: Vec::new(),
+        picture: None,
+        map: None,
+    }
+}
