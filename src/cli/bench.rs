@@ -11,11 +11,11 @@ use clap::ArgMatches;
 use raywalk::measure::bench::{Bench, Listener};
 use raywalk::measure::records::{Environment, Records, fingerprint};
 use raywalk::measure::sweep::{Effort, Job, View, by_primitives, of_scene};
-use raywalk::measure::{stability, thesis};
+use raywalk::measure::{page, stability, thesis};
 use raywalk::scene::Camera;
 use raywalk::settings::Settings;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Measures what `asked` says.
@@ -28,10 +28,8 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     let folder = asked.get_one::<PathBuf>("output").cloned().unwrap_or_default();
     if asked.get_flag("redraw") {
         let records = Records::load(&folder)?;
-        return draw(
-            &records.ok_or_else(|| Failure::Run(format!("{}: no records.json to draw", folder.display())))?,
-            &folder,
-        );
+        let records = records.ok_or_else(|| Failure::Run(format!("{}: no records.json to draw", folder.display())))?;
+        return Ok(page::draw(&records, &folder)?);
     }
     let interrupt = Interrupt::listen()?;
     let effort = if asked.get_flag("quick") { Effort::QUICK } else { Effort::DEFAULT };
@@ -51,14 +49,9 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     let teller = Teller(&progress);
     let mut bench = Bench::new(folder.clone(), records, interrupt.token.clone(), &teller);
     bench.run(&jobs)?;
-    draw(&bench.records, &folder)?;
+    page::draw(&bench.records, &folder)?;
     drop(progress);
     interrupt.check()
-}
-
-/// Draws what was measured.
-fn draw(_records: &Records, _folder: &Path) -> Result<(), Failure> {
-    Ok(())
 }
 
 struct Teller<'a>(&'a Progress);

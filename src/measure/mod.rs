@@ -7,9 +7,11 @@
 //! and looks at what comes back.
 
 pub mod bench;
+pub mod chart;
 pub mod counts;
 pub mod difference;
 pub mod metric;
+pub mod page;
 pub mod record;
 pub mod records;
 pub mod run;
@@ -17,6 +19,7 @@ pub mod stability;
 pub mod statistics;
 pub mod sweep;
 pub mod system;
+pub mod table;
 pub mod thesis;
 
 pub use record::Record;

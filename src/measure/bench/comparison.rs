@@ -5,7 +5,7 @@
 
 use super::{Bench, BenchError, film, judge, new_row};
 use crate::measure::Run;
-use crate::measure::records::{Key, Row};
+use crate::measure::records::{Key, Row, file_name};
 use crate::measure::run::timed_frame;
 use crate::measure::sweep::{Comparison, Judge, Method};
 use crate::picture::{EightBit, Format, PendingFile};
@@ -194,12 +194,6 @@ impl Row {
             }
         }
     }
-}
-
-/// A file name made of parts, with nothing in it that a file system or a page could stumble over.
-pub fn file_name(parts: &[&str]) -> String {
-    let safe = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c.to_ascii_lowercase() } else { '_' };
-    parts.iter().map(|part| part.chars().map(safe).collect::<String>()).collect::<Vec<_>>().join("-")
 }
 
 fn write_picture(path: &Path, picture: &EightBit) -> Result<(), BenchError> {

@@ -6,7 +6,7 @@ mod walk;
 mod watch;
 
 use super::records::{Key, Records, RecordsError, Row};
-use super::sweep::{Job, Method, View, changed_flags};
+use super::sweep::{Job, Method, View};
 use crate::picture::PictureError;
 use crate::render::{CancelToken, Film, FrameStats, Planes, Scratch, render_frame};
 use crate::scene::{Camera, Scene};
@@ -112,7 +112,7 @@ fn new_row(key: Key, view: &View, method: &Method) -> Row {
     Row {
         key,
         family: method.family.to_owned(),
-        flags: changed_flags(&method.settings),
+        flags: method.settings.flags(),
         primitives: view.scene.geometry.len() as u64,
         complete: false,
         frame_ms: Default::default(),

@@ -47,7 +47,7 @@ impl Environment {
             simd: SimdToken::new(base.simd).unwrap_or_else(SimdToken::best).name().to_owned(),
             threads: thread_count(base.threads),
             effort: effort.to_owned(),
-            flags: super::super::sweep::changed_flags(base),
+            flags: base.flags(),
             scenes: BTreeMap::new(),
         }
     }

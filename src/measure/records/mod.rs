@@ -147,6 +147,12 @@ impl Records {
     }
 }
 
+/// A file name made of parts, with nothing in it that a file system or a page could stumble over.
+pub fn file_name(parts: &[&str]) -> String {
+    let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '.' | '-') { c.to_ascii_lowercase() } else { '_' };
+    parts.iter().map(|part| part.chars().map(safe).collect::<String>()).collect::<Vec<_>>().join("-")
+}
+
 /// Removes what a killed run had begun to write.
 fn remove_leftovers(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {

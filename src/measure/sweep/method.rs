@@ -136,14 +136,6 @@ pub fn optimisations(base: &Settings) -> Vec<Method> {
     methods
 }
 
-/// The flags that make these settings out of the preset `exact`, as they are typed.
-pub fn changed_flags(settings: &Settings) -> String {
-    let exact = Settings::exact();
-    let changed = ROWS.iter().filter(|row| (row.get)(settings) != (row.get)(&exact));
-    let flags: Vec<String> = changed.map(|row| format!("--{} {}", row.name, (row.get)(settings))).collect();
-    flags.join(" ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -168,6 +160,6 @@ mod tests {
         let methods = sweep_methods(&base, false);
         let fast = methods.iter().find(|method| method.name == "fast").expect("listed");
         assert_eq!(fast.settings, Settings { shadows: false, ..Settings::fast() });
-        assert_eq!(changed_flags(&base), "--shadows off");
+        assert_eq!(base.flags(), "--shadows off");
     }
 }

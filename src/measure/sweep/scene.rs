@@ -32,8 +32,9 @@ pub fn of_scene(view: &View, base: &Settings, path: Option<Vec<Camera>>, effort:
         })
     };
     let size = effort.size(view.size);
-    let quarter = (size.0 / 4, size.1 / 4);
     let half = (size.0 / 2, size.1 / 2);
+    // Without its optimisations the tracer is slow, so these are compared on smaller pictures.
+    let quarter = if effort.quick { half } else { (size.0 / 4, size.1 / 4) };
     let mut jobs = vec![
         comparison(Part::Settings, size, None, Judge::Metrics, sweep_methods(base, effort.quick), 60),
         comparison(Part::Optimisations, quarter, None, Judge::Time, optimisations(base), 16),

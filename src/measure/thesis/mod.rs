@@ -3,6 +3,10 @@
 //! S. A. Kovalchuk, 2022, table 5.1. Its scenes and picture sizes are not published, so its times stand beside ours as
 //! text. What the table lacked is added: the certified method, and the error of each density.
 
+mod table;
+
+pub use table::table;
+
 use super::records::Part;
 use super::sweep::{Comparison, Job, Judge, Method, Reference, View};
 use crate::scene::{LoadOptions, Scene, SceneError, builtin, load_text};
@@ -81,9 +85,9 @@ pub fn views() -> Result<Vec<View>, SceneError> {
     let options = LoadOptions::default();
     let text = |name: &str, text: &str| load_text(name, text, &options);
     let scenes = [
-        ("base", text("base.json", include_str!("../../scenes/base.json"))?),
-        ("mirrors", text("mirrors.json", include_str!("../../scenes/mirrors.json"))?),
-        ("cornell", text("cornell.json", include_str!("../../scenes/cornell.json"))?),
+        ("base", text("base.json", include_str!("../../../scenes/base.json"))?),
+        ("mirrors", text("mirrors.json", include_str!("../../../scenes/mirrors.json"))?),
+        ("cornell", text("cornell.json", include_str!("../../../scenes/cornell.json"))?),
         ("gallery", builtin(&options)?),
     ];
     let view = |(name, scene): (&str, Scene)| {
