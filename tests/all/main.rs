@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod adversary;
+mod bench;
 mod blit;
 mod cli;
 mod determinism;

@@ -7,7 +7,7 @@ use super::{Bench, BenchError, film, judge, new_row};
 use crate::measure::Run;
 use crate::measure::records::{Key, Row, file_name};
 use crate::measure::run::timed_frame;
-use crate::measure::sweep::{Comparison, Judge, Method};
+use crate::measure::sweep::{Comparison, Judge, Method, View};
 use crate::picture::{EightBit, Format, PendingFile};
 use crate::render::{Film, Planes};
 use serde_json::Value;
@@ -19,6 +19,9 @@ use std::time::{Duration, Instant};
 /// Timed frames of one turn, at most, and the time after which no further one starts.
 const FRAMES_A_TURN: usize = 4;
 const TURN: Duration = Duration::from_millis(60);
+
+/// Frames that take longer than this, in milliseconds, are so long that none before them has to warm anything up.
+const SLOW_MS: f64 = 1000.0;
 
 /// What pictures are held against.
 struct Truth {
@@ -96,7 +99,7 @@ impl Bench<'_> {
         let (width, height) = job.view.size;
         let mut film = Film::new(width, height, Planes { object: true, ..Planes::default() });
         let against = &job.reference;
-        self.render(&against.scene, &against.camera, &against.settings, &mut film, None)?;
+        self.render(&against.scene, &against.camera, &against.settings, &mut film)?;
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         let counts = match &job.judge {
             Judge::Wrong(Some(subject)) => {
@@ -116,11 +119,15 @@ impl Bench<'_> {
         film: &mut Film,
         truth: Option<&Truth>,
     ) -> Result<(), BenchError> {
-        let (scene, camera) = (&job.view.scene, &job.view.camera);
-        let stats = self.render(scene, camera, &method.settings, film, Some(job.longest_frame))?;
-        if stats.is_none() {
+        let mut run = Run::default();
+        if !self.timed(job, method, film, Some(job.longest_frame), &mut run)? {
             self.records.rows[place].cut_off_ms = Some(job.longest_frame.as_secs_f64() * 1e3);
-        } else if let Some(truth) = truth {
+            return self.save();
+        }
+        if run.frame_ms().median > SLOW_MS {
+            self.records.rows[place].add(&run);
+        }
+        if let Some(truth) = truth {
             let picture = EightBit::of_film(film);
             let error = match job.judge {
                 Judge::Time => BTreeMap::new(),
@@ -152,21 +159,30 @@ impl Bench<'_> {
         Ok(())
     }
 
+    /// Adds one frame of a method to `run`; tells whether it was completed within `longest`.
+    fn timed(
+        &mut self,
+        job: &Comparison,
+        method: &Method,
+        film: &mut Film,
+        longest: Option<Duration>,
+        run: &mut Run,
+    ) -> Result<bool, BenchError> {
+        let View { scene, camera, .. } = &job.view;
+        self.guarded(method.settings.threads, longest, |scratch| {
+            timed_frame(run, scene, camera, &method.settings, scratch, film)
+        })
+    }
+
     /// One turn of a method: an untimed frame, then timed ones.
     fn turn(&mut self, job: &Comparison, method: &Method, place: usize, film: &mut Film) -> Result<(), BenchError> {
-        let (scene, camera) = (&job.view.scene, &job.view.camera);
-        let longest = job.longest_frame * 4;
-        if self.render(scene, camera, &method.settings, film, Some(longest))?.is_none() {
-            return Ok(());
+        if self.records.rows[place].frame_ms.median <= SLOW_MS {
+            self.timed(job, method, film, None, &mut Run::default())?;
         }
         let start = Instant::now();
         for _ in 0..FRAMES_A_TURN {
             let mut run = Run::default();
-            let scratch = self.scratches.entry(method.settings.threads).or_default();
-            self.watch.start(None);
-            timed_frame(&mut run, scene, camera, &method.settings, scratch, film);
-            self.watch.end();
-            self.check()?;
+            self.timed(job, method, film, None, &mut run)?;
             self.records.rows[place].add(&run);
             if start.elapsed() > TURN {
                 break;
@@ -177,7 +193,7 @@ impl Bench<'_> {
 }
 
 impl Row {
-    /// Adds a frame.
+    /// Adds the frame of `run`.
     fn add(&mut self, run: &Run) {
         let (before, total) = (self.frame_ms.len() as f64, run.total());
         self.frame_ms.add(run.frame_ms().median);

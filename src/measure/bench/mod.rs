@@ -8,7 +8,7 @@ mod watch;
 use super::records::{Key, Records, RecordsError, Row};
 use super::sweep::{Job, Method, View};
 use crate::picture::PictureError;
-use crate::render::{CancelToken, Film, FrameStats, Planes, Scratch, render_frame};
+use crate::render::{CancelToken, Film, Planes, Scratch, render_frame};
 use crate::scene::{Camera, Scene};
 use crate::settings::Settings;
 use std::collections::BTreeMap;
@@ -74,27 +74,32 @@ impl<'a> Bench<'a> {
         Ok(())
     }
 
-    /// Renders one frame; `None` where it took longer than `longest` and was cut off.
+    /// Renders one frame that nobody times.
     fn render(
         &mut self,
         scene: &Scene,
         camera: &Camera,
         settings: &Settings,
         film: &mut Film,
-        longest: Option<Duration>,
-    ) -> Result<Option<FrameStats>, BenchError> {
-        let scratch = self.scratches.entry(settings.threads).or_default();
-        scratch.cancel = self.watch.token();
-        self.watch.start(longest.map(|longest| Instant::now() + longest));
-        let stats = render_frame(scene, camera, settings, scratch, film);
-        self.watch.end();
-        self.check()?;
-        Ok(stats.completed.then_some(stats))
+    ) -> Result<(), BenchError> {
+        self.guarded(settings.threads, None, |scratch| render_frame(scene, camera, settings, scratch, film))?;
+        Ok(())
     }
 
-    /// Ends the bench if that was asked for.
-    fn check(&self) -> Result<(), BenchError> {
-        if self.watch.stop.is_cancelled() { Err(BenchError::Interrupted) } else { Ok(()) }
+    /// Lets `work` render with the scratch of so many threads, until it takes longer than `longest` or the bench has to
+    /// stop.
+    fn guarded<T>(
+        &mut self,
+        threads: i32,
+        longest: Option<Duration>,
+        work: impl FnOnce(&mut Scratch) -> T,
+    ) -> Result<T, BenchError> {
+        let scratch = self.scratches.entry(threads).or_default();
+        scratch.cancel = self.watch.token();
+        self.watch.start(longest.map(|longest| Instant::now() + longest));
+        let result = work(scratch);
+        self.watch.end();
+        if self.watch.stop.is_cancelled() { Err(BenchError::Interrupted) } else { Ok(result) }
     }
 
     fn save(&self) -> Result<(), BenchError> {

@@ -2,30 +2,24 @@
 
 use super::judge::Frames;
 use super::{Bench, BenchError, film, new_row};
-use crate::measure::records::{Key, Part};
+use crate::measure::records::{FrameError, Key, Part};
 use crate::measure::sweep::{Method, Walk};
 use crate::picture::EightBit;
+use crate::scene::Camera;
 use std::time::Instant;
 
 impl Bench<'_> {
-    /// Does what is left of `job`: method by method, each with the reference of every frame.
+    /// Does what is left of `job`: method by method, each with the reference of every frame, all of them as far.
     pub(super) fn walk(&mut self, job: &Walk) -> Result<(), BenchError> {
-        let start = Instant::now();
-        for (number, method) in job.methods.iter().enumerate() {
-            let key = Key {
-                part: Part::Walk,
-                scene: job.view.name.clone(),
-                camera: job.view.camera_name.clone(),
-                method: method.name.clone(),
-                width: job.view.size.0,
-                height: job.view.size.1,
-                at: None,
-            };
-            let place = self.records.place(&key, || new_row(key.clone(), &job.view, method));
+        let places: Vec<usize> = job.methods.iter().map(|method| self.place_of_walk(job, method)).collect();
+        let followed = places.iter().map(|&place| self.records.rows[place].frames.len()).max().unwrap_or_default();
+        let frames = if followed > 0 { followed } else { self.affordable_frames(job)? };
+        let cameras = &job.cameras[..frames.min(job.cameras.len())];
+        for (method, place) in job.methods.iter().zip(places) {
             if !self.records.rows[place].complete {
-                // Each method gets as much of the time that is left as each of the methods that are left.
-                let left = job.budget.saturating_sub(start.elapsed()) / (job.methods.len() - number) as u32;
-                self.follow(job, method, place, Instant::now() + left)?;
+                let errors = self.follow(job, method, cameras)?;
+                let row = &mut self.records.rows[place];
+                (row.frames, row.complete) = (errors, true);
                 self.save()?;
             }
             self.done += job.cameras.len() as u64;
@@ -34,20 +28,43 @@ impl Bench<'_> {
         Ok(())
     }
 
-    /// Renders the frames of one method and their references until `deadline`, at least two.
-    fn follow(&mut self, job: &Walk, method: &Method, place: usize, deadline: Instant) -> Result<(), BenchError> {
-        let (mut film, mut judge, mut errors) = (film(job.view.size), Frames::default(), Vec::new());
-        for camera in &job.cameras {
-            if errors.len() > 1 && Instant::now() > deadline {
-                break;
-            }
-            self.render(&job.view.scene, camera, &job.reference, &mut film, None)?;
+    /// The place of a method's row.
+    fn place_of_walk(&mut self, job: &Walk, method: &Method) -> usize {
+        let key = Key {
+            part: Part::Walk,
+            scene: job.view.name.clone(),
+            camera: job.view.camera_name.clone(),
+            method: method.name.clone(),
+            width: job.view.size.0,
+            height: job.view.size.1,
+            at: None,
+        };
+        self.records.place(&key, || new_row(key.clone(), &job.view, method))
+    }
+
+    /// How many frames of every method fit into the time that is given, by the cost of the second one; at least two.
+    fn affordable_frames(&mut self, job: &Walk) -> Result<usize, BenchError> {
+        let (Some(method), [first, second, ..]) = (job.methods.first(), &job.cameras[..]) else {
+            return Ok(job.cameras.len());
+        };
+        self.follow(job, method, &[*first])?;
+        let start = Instant::now();
+        self.follow(job, method, &[*second])?;
+        let all = start.elapsed().as_secs_f64() * job.methods.len() as f64;
+        let fitting = job.budget.as_secs_f64() / all;
+        Ok((fitting as usize).clamp(2, job.cameras.len()))
+    }
+
+    /// Renders the frames of one method and their references.
+    fn follow(&mut self, job: &Walk, method: &Method, cameras: &[Camera]) -> Result<Vec<FrameError>, BenchError> {
+        let (mut film, mut judge) = (film(job.view.size), Frames::default());
+        let mut errors = Vec::with_capacity(cameras.len());
+        for camera in cameras {
+            self.render(&job.view.scene, camera, &job.reference, &mut film)?;
             let reference = EightBit::of_film(&film);
-            self.render(&job.view.scene, camera, &method.settings, &mut film, None)?;
+            self.render(&job.view.scene, camera, &method.settings, &mut film)?;
             errors.push(judge.judge(&reference, &EightBit::of_film(&film)));
         }
-        let row = &mut self.records.rows[place];
-        (row.frames, row.complete) = (errors, true);
-        Ok(())
+        Ok(errors)
     }
 }

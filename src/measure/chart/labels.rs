@@ -10,12 +10,14 @@ const HEIGHT: f64 = 15.0;
 pub struct Labels {
     bounds: Area,
     taken: Vec<Area>,
+    /// The labels among what is taken.
+    written: Vec<Area>,
 }
 
 impl Labels {
     /// Nothing is taken within `bounds`.
     pub fn within(bounds: Area) -> Self {
-        Self { bounds, taken: Vec::new() }
+        Self { bounds, taken: Vec::new(), written: Vec::new() }
     }
 
     /// Takes the space of a mark.
@@ -24,8 +26,18 @@ impl Labels {
     }
 
     /// Takes the space of a level line.
-    pub fn avoid_line(&mut self, from: f64, to: f64, y: f64) {
+    pub fn avoid_level(&mut self, from: f64, to: f64, y: f64) {
         self.taken.push(Area { left: from, top: y - 1.0, right: to, bottom: y + 1.0 });
+    }
+
+    /// Takes the space of a slanting line, in small squares along it.
+    pub fn avoid_line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64)) {
+        let steps = ((x2 - x1).hypot(y2 - y1) / 4.0).ceil().max(1.0);
+        for step in 0..=steps as u32 {
+            let share = f64::from(step) / steps;
+            let (x, y) = (x1 + share * (x2 - x1), y1 + share * (y2 - y1));
+            self.taken.push(Area { left: x - 2.0, top: y - 2.0, right: x + 2.0, bottom: y + 2.0 });
+        }
     }
 
     /// Writes `text` beside a mark, farther away with a thin line where there is no room; leaves it out where there is none
@@ -52,12 +64,14 @@ impl Labels {
                 };
                 let (top, center) = (y + dy - HEIGHT / 2.0, y + dy);
                 let area = Area { left, top, right: left + width, bottom: top + HEIGHT };
-                if self.is_free(area) {
+                let crosses = |label: &Area| distance > 20.0 && meets(label, (x, y), (x + dx, center));
+                if self.is_free(area) && !self.written.iter().any(crosses) {
                     if distance > 20.0 {
                         svg.line((x, y), (x + dx, center), "leader");
                     }
                     svg.text(x + dx, center + 4.5, anchor, "", text);
                     self.taken.push(area);
+                    self.written.push(area);
                     return;
                 }
             }
@@ -74,6 +88,14 @@ impl Labels {
         };
         inside && self.taken.iter().all(apart)
     }
+}
+
+/// Whether a line passes through an area, as far as points along it tell.
+fn meets(area: &Area, (x1, y1): (f64, f64), (x2, y2): (f64, f64)) -> bool {
+    (0..=16).map(|step| f64::from(step) / 16.0).any(|share| {
+        let (x, y) = (x1 + share * (x2 - x1), y1 + share * (y2 - y1));
+        (area.left..=area.right).contains(&x) && (area.top..=area.bottom).contains(&y)
+    })
 }
 
 /// Heights for labels that would like to stand at `wanted`, at least a line apart, between `top` and `bottom`, in order.
@@ -106,7 +128,7 @@ mod tests {
         let marks: Vec<(f64, f64)> = (0..8).map(|i| (200.0 + f64::from(i), 150.0)).collect();
         marks.iter().for_each(|&mark| labels.avoid(mark));
         marks.iter().for_each(|&mark| labels.place(&mut svg, mark, "a method"));
-        let written = &labels.taken[marks.len()..];
+        let written = &labels.written;
         assert!(written.len() >= 6, "{} labels", written.len());
         for (i, a) in written.iter().enumerate() {
             for b in &labels.taken[..marks.len() + i] {

@@ -1,10 +1,12 @@
-//! What each optimisation gains alone, and what is lost when it alone is taken away.
+//! What each optimisation gains alone, and what is lost when it alone is taken away: in CPU time, which other work of the
+//! machine disturbs least; threads, which save no CPU time, by the clock.
 
 use super::axis::{Area, Axis};
 use super::number::short;
 use super::svg::{Anchor, Svg};
 use super::{Chart, by_view, file_name, view_title};
 use crate::measure::records::{Part, Records, Row, Samples};
+use crate::measure::statistics::percentile;
 use crate::measure::sweep::OPTIMISATIONS;
 
 const WIDTH: f64 = 980.0;
@@ -30,15 +32,18 @@ fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
     let bars: Vec<(&str, [Option<Factor>; 2])> = OPTIMISATIONS
         .iter()
         .map(|(name, _)| {
-            let alone = named(&format!("only {name}")).and_then(|only| factor(none, only));
-            let without = named(&format!("without {name}")).and_then(|without| factor(without, all));
+            let time =
+                if *name == "threads" { |row: &Row| row.frame_ms.clone() } else { |row: &Row| row.cpu_ms.clone() };
+            let alone = named(&format!("only {name}")).and_then(|only| factor(none, only, time));
+            let without = named(&format!("without {name}")).and_then(|without| factor(without, all, time));
             (*name, [alone, without])
         })
         .collect();
     let size = (WIDTH, 150.0 + GROUP * bars.len() as f64);
     let title = format!("What each optimisation is worth: {}", view_title(view));
     let note = format!(
-        "{}x{}, frame time by the clock; all on: {} ms, all off: {} ms. Whiskers: what the frames' spread (25 to 75 %) leaves open.",
+        "{}x{}, median CPU time of a frame, for threads the time by the clock; all on: {} ms, all off: {} ms. Whiskers: what the \
+         spread of frames (25 to 75 %) leaves open.",
         all.key.width,
         all.key.height,
         time_text(all),
@@ -89,27 +94,29 @@ fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
     Some(Chart { name: file_name("optimisations", view), section: view_title(view), title, size, body: svg.0 })
 }
 
-fn factor(slow: &Row, fast: &Row) -> Option<Factor> {
-    if fast.frame_ms.is_empty() {
+fn factor(slow: &Row, fast: &Row, time: fn(&Row) -> Samples) -> Option<Factor> {
+    let (slow_ms, fast_ms) = (time(slow), time(fast));
+    if fast_ms.is_empty() {
         return None;
+    }
+    if let Some(cut_off) = slow.cut_off_ms {
+        // Of what was cut off only the clock is known, which is no more than the CPU time of a frame on one thread.
+        let least = cut_off / fast_ms.median;
+        return Some(Factor { median: least, low: least, high: least, at_least: true });
     }
     let quartile = |samples: &Samples, q: f64| {
         let mut sorted = samples.samples.clone();
         sorted.sort_by(f64::total_cmp);
-        crate::measure::statistics::percentile(&sorted, q).unwrap_or_default()
+        percentile(&sorted, q).unwrap_or_default()
     };
-    if let Some(cut_off) = slow.cut_off_ms {
-        let median = cut_off / fast.frame_ms.median;
-        return Some(Factor { median, low: median, high: median, at_least: true });
-    }
-    (!slow.frame_ms.is_empty()).then(|| Factor {
-        median: slow.frame_ms.median / fast.frame_ms.median,
-        low: quartile(&slow.frame_ms, 0.25) / quartile(&fast.frame_ms, 0.75),
-        high: quartile(&slow.frame_ms, 0.75) / quartile(&fast.frame_ms, 0.25),
+    (!slow_ms.is_empty()).then(|| Factor {
+        median: slow_ms.median / fast_ms.median,
+        low: quartile(&slow_ms, 0.25) / quartile(&fast_ms, 0.75),
+        high: quartile(&slow_ms, 0.75) / quartile(&fast_ms, 0.25),
         at_least: false,
     })
 }
 
 fn time_text(row: &Row) -> String {
-    row.cut_off_ms.map_or_else(|| short(row.frame_ms.median), |ms| format!("more than {}", short(ms)))
+    row.cut_off_ms.map_or_else(|| short(row.cpu_ms.median), |ms| format!("more than {}", short(ms)))
 }

@@ -17,7 +17,7 @@ text{font-family:sans-serif;font-size:13px;fill:#222}
 pub const DARK: &str = "\
 text{fill:#ddd}.note,.tick{fill:#aaa}.paper{fill:#16181c}.frame,.axis{stroke:#888}.grid{stroke:#33363c}.faintgrid{stroke:#25282d}
 .band{fill:#1d2a22}.f0{fill:#fff;stroke:#fff}.f1{fill:#3a9bdc;stroke:#3a9bdc}.front{stroke:#999}.part{stroke:#16181c}
-.s0{fill:#6b2a86}.s1{fill:#5d55b0}";
+.s0{fill:#6b2a86}.s1{fill:#5d55b0}.faint{opacity:0.55}";
 
 /// A family of methods: its name in records, the class of its colour, and its mark within 10 x 10 pixels.
 struct Family {

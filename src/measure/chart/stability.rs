@@ -54,7 +54,7 @@ fn chart(records: &Records, difficulty: &Difficulty) -> Option<Chart> {
     let y =
         Axis::logarithmic(points().map(|(_, share, _)| *share), errors.bottom - 6.0, errors.top + 10.0).up_to(100.0);
     svg.rectangle(area.left, errors.bottom, area.right - area.left, band, "band");
-    area.axis_below(&mut svg, &x, &format!("{}, logarithmic", difficulty.axis));
+    area.axis_below(&mut svg, &x, difficulty.axis);
     errors.axis_left(&mut svg, &y, "visibly wrong pixels [%], logarithmic");
     svg.text(area.left - 8.0, errors.bottom + band / 2.0 + 4.0, Anchor::End, "tick", "none");
     area.frame(&mut svg);

@@ -15,7 +15,7 @@ const EXACT_LINE: f64 = 17.0;
 /// A metric's panel: its name, its axis title, and where it starts.
 const PANELS: [(&str, &str, f64); 2] = [
     ("flip", "error: mean FLIP, 0 to 1, logarithmic", 82.0),
-    ("pixels_off", "visibly wrong pixels (off by more than 2/255) [%]", 666.0),
+    ("pixels_off", "visibly wrong pixels (off by more than 2/255) [%, logarithmic]", 666.0),
 ];
 
 /// One chart for every view that settings were swept on.
@@ -82,8 +82,9 @@ fn draw_panel(svg: &mut Svg, records: &Records, rows: &[&Row], (metric, title, l
     for &(row, error) in &points {
         let at = place(row, error);
         labels.avoid(at);
-        labels.avoid_line(x.at(row.frame_ms.p5), x.at(row.frame_ms.p95), at.1);
+        labels.avoid_level(x.at(row.frame_ms.p5), x.at(row.frame_ms.p95), at.1);
     }
+    corners.windows(2).for_each(|ends| labels.avoid_line(ends[0], ends[1]));
     for (i, &(row, error)) in points.iter().enumerate() {
         let at = place(row, error);
         let faint = !front.contains(&i);

@@ -81,7 +81,7 @@ pub struct Walk {
     pub reference: Settings,
     /// The methods.
     pub methods: Vec<Method>,
-    /// No new frame starts after this time.
+    /// As many frames are followed as probably fit into this time.
     pub budget: Duration,
 }
 

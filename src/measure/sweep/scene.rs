@@ -5,6 +5,7 @@ use super::{Comparison, Effort, Job, Judge, Method, Reference, View, Walk};
 use crate::measure::records::Part;
 use crate::scene::Camera;
 use crate::settings::{Settings, Visibility};
+use std::time::Duration;
 
 /// Frames of a walk that no path was given for.
 const STEPS: u32 = 36;
@@ -25,7 +26,12 @@ pub fn of_scene(view: &View, base: &Settings, path: Option<Vec<Camera>>, effort:
             reference: reference.clone(),
             judge,
             keeps_pictures: part == Part::Settings,
-            longest_frame: budget / (2 * methods.len() as u32),
+            // Slow methods must not eat the time of all; but of optimisations the slowest is what others are held against.
+            longest_frame: match part {
+                Part::Optimisations => budget / SLOWEST,
+                Part::Pixels => budget / 2,
+                _ => budget / (2 * methods.len() as u32),
+            },
             methods,
             rounds: effort.rounds,
             budget,
@@ -33,11 +39,16 @@ pub fn of_scene(view: &View, base: &Settings, path: Option<Vec<Camera>>, effort:
     };
     let size = effort.size(view.size);
     let half = (size.0 / 2, size.1 / 2);
-    // Without its optimisations the tracer is slow, so these are compared on smaller pictures.
-    let quarter = if effort.quick { half } else { (size.0 / 4, size.1 / 4) };
     let mut jobs = vec![
         comparison(Part::Settings, size, None, Judge::Metrics, sweep_methods(base, effort.quick), 60),
-        comparison(Part::Optimisations, quarter, None, Judge::Time, optimisations(base), 16),
+        comparison(
+            Part::Optimisations,
+            bare_size(view, half, effort.share(OPTIMISATIONS_SHARE) / SLOWEST),
+            None,
+            Judge::Time,
+            optimisations(base),
+            OPTIMISATIONS_SHARE,
+        ),
     ];
     let small = View { size: (half.0.max(1), half.1.max(1)), ..view.clone() };
     jobs.push(Job::Walk(Walk {
@@ -54,6 +65,25 @@ pub fn of_scene(view: &View, base: &Settings, path: Option<Vec<Camera>>, effort:
         jobs.push(comparison(Part::Pixels, scaled, Some(pixels), Judge::Time, methods, 3));
     }
     jobs
+}
+
+/// The part of a scene's time that optimisations are given, in per cent, and the part of that which the slowest frame,
+/// the one without any of them, may take.
+const OPTIMISATIONS_SHARE: u32 = 16;
+const SLOWEST: u32 = 8;
+
+/// A size at which a frame without any optimisation should end within `longest`: `size`, or a smaller one of its shape.
+fn bare_size(view: &View, size: (u32, u32), longest: Duration) -> (u32, u32) {
+    /// Seconds to test one primitive in scalar code, on the slow side, and rays a pixel.
+    const TEST: f64 = 4e-9;
+    const RAYS: f64 = 6.0;
+    /// Fewer pixels say nothing about pictures.
+    const LEAST: f64 = 64.0 * 36.0;
+    let pixels = f64::from(size.0) * f64::from(size.1);
+    let affordable = longest.as_secs_f64() / (view.scene.geometry.len().max(1) as f64 * RAYS * TEST);
+    let scale = (affordable.max(LEAST) / pixels.max(1.0)).sqrt().min(1.0);
+    let scaled = |side: u32| ((f64::from(side) * scale).round() as u32).max(1);
+    (scaled(size.0), scaled(size.1))
 }
 
 /// The methods whose growth is drawn.
