@@ -88,12 +88,11 @@ fn thesis_jobs(scenes: &[&PathBuf], options: &Options, environment: &mut Environ
     Ok(views.into_iter().flat_map(|view| thesis::jobs(&View { size, ..view }, &options.settings)).collect())
 }
 
+/// What is looked at, and the cameras of a path.
+type Subject = (View, Option<Vec<Camera>>);
+
 /// What is looked at in each scene, with the cameras of a path if one is given; notes each scene's fingerprint.
-fn views(
-    scenes: &[&PathBuf],
-    options: &Options,
-    environment: &mut Environment,
-) -> Result<Vec<(View, Option<Vec<Camera>>)>, Failure> {
+fn views(scenes: &[&PathBuf], options: &Options, environment: &mut Environment) -> Result<Vec<Subject>, Failure> {
     let files = if scenes.is_empty() { vec![None] } else { scenes.iter().map(|file| Some((*file).clone())).collect() };
     let names = names(&files);
     let frames = Frames::of(options)?;

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 
 /// Timed frames of one turn, at most, and the time after which no further one starts.
 const FRAMES_A_TURN: usize = 4;
-const TURN: Duration = Duration::from_millis(60);
+const TURN: Duration = Duration::from_millis(250);
 
 /// Frames that take longer than this, in milliseconds, are so long that none before them has to warm anything up.
 const SLOW_MS: f64 = 1000.0;

@@ -13,10 +13,8 @@ const SIZE: (f64, f64) = (1180.0, 560.0);
 const EXACT_LINE: f64 = 17.0;
 
 /// A metric's panel: its name, its axis title, and where it starts.
-const PANELS: [(&str, &str, f64); 2] = [
-    ("flip", "error: mean FLIP, 0 to 1, logarithmic", 82.0),
-    ("pixels_off", "visibly wrong pixels (off by more than 2/255) [%, logarithmic]", 666.0),
-];
+const PANELS: [(&str, &str, f64); 2] =
+    [("flip", "mean FLIP [0 to 1, logarithmic]", 82.0), ("pixels_off", "visibly wrong pixels [%, logarithmic]", 666.0)];
 
 /// One chart for every view that settings were swept on.
 pub fn charts(records: &Records) -> Vec<Chart> {
@@ -26,7 +24,7 @@ pub fn charts(records: &Records) -> Vec<Chart> {
         let title = format!("Time against error: {}", view_title(view));
         let note = format!(
             "{}x{}, median of {} frames or more; whiskers: 5 % to 95 % of frames; dashed: the best error for the time; faint: \
-             something else is faster and no worse.",
+             something else is faster and no worse; visibly wrong: off by more than 2/255.",
             first.key.width,
             first.key.height,
             rows.iter().filter(|row| row.cut_off_ms.is_none()).map(|row| row.frame_ms.len()).min().unwrap_or_default()

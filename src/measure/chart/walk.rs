@@ -41,7 +41,7 @@ fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
         let top = 66.0 + STRIDE * i as f64;
         let area = Area { left: 82.0, top, right: SIZE.0 - ROOM_FOR_NAMES, bottom: top + STRIP };
         let x = Axis::range(0.0, frames as f64 - 1.0, area.left + 6.0, area.right - 6.0);
-        let line = |row: &&&Row| Line {
+        let line = |row: &&Row| Line {
             family: row.family.clone(),
             name: row.key.method.clone(),
             points: row
@@ -52,7 +52,7 @@ fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
                 .map(|(n, frame)| (n as f64, value(frame, pixels), String::new()))
                 .collect(),
         };
-        let drawn: Vec<Line> = rows.iter().map(|row| line(&row)).collect();
+        let drawn: Vec<Line> = rows.iter().map(|row| line(row)).collect();
         let values = drawn.iter().flat_map(|line| line.points.iter().map(|(_, value, _)| *value));
         let y = Axis::linear(values, area.bottom, area.top + 6.0);
         area.axis_left(&mut svg, &y, unit);

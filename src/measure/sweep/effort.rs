@@ -17,9 +17,9 @@ pub struct Effort {
 
 impl Effort {
     /// Under three minutes a scene on two cores.
-    pub const DEFAULT: Self = Self { name: "default", quick: false, rounds: 6, scene: Duration::from_secs(140) };
+    pub const DEFAULT: Self = Self { name: "default", quick: false, rounds: 6, scene: Duration::from_secs(110) };
     /// Under thirty seconds a scene.
-    pub const QUICK: Self = Self { name: "quick", quick: true, rounds: 3, scene: Duration::from_secs(20) };
+    pub const QUICK: Self = Self { name: "quick", quick: true, rounds: 3, scene: Duration::from_secs(18) };
 
     /// A part of a scene's time, in per cent.
     pub(super) fn share(&self, percent: u32) -> Duration {

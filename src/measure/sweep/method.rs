@@ -13,8 +13,11 @@ pub struct Method {
     pub settings: Settings,
 }
 
+/// Changes settings.
+pub type Change = fn(&mut Settings);
+
 /// A family, a name, and what is changed; the last column says whether a quick sweep has it.
-type Entry = (&'static str, &'static str, fn(&mut Settings), bool);
+type Entry = (&'static str, &'static str, Change, bool);
 
 /// What a sweep tries, the reference first.
 const SWEEP: &[Entry] = &[
@@ -25,9 +28,7 @@ const SWEEP: &[Entry] = &[
     ("exact", "min-weight 1/16", |s| s.min_weight = 1.0 / 16.0, false),
     ("thesis cache", "thesis sphere cache", |s| s.sphere_cache = SphereCache::Thesis, true),
     ("balanced", "balanced", |s| apply("balanced", s), true),
-    ("balanced", "balanced 4/255", |s| certified_color(s, 4.0), false),
-    ("balanced", "balanced 32/255", |s| certified_color(s, 32.0), false),
-    ("balanced", "balanced 64/255", |s| certified_color(s, 64.0), false),
+    ("balanced", "interpolated light", |s| s.fill = Fill::Color, false),
     ("hit", "hit 2", |s| subsample(s, Fill::Hit, 2), true),
     ("hit", "hit 4", |s| subsample(s, Fill::Hit, 4), false),
     ("hit", "hit 8", |s| subsample(s, Fill::Hit, 8), true),
@@ -64,7 +65,7 @@ const WALK: &[Entry] = &[
 ];
 
 /// An optimisation that keeps the picture: its name, and how it is taken away.
-pub const OPTIMISATIONS: &[(&str, fn(&mut Settings))] = &[
+pub const OPTIMISATIONS: &[(&str, Change)] = &[
     ("certified visibility", |s| s.visibility = Visibility::Full),
     ("bounding volumes", |s| s.bvh = false),
     ("shadow-object cache", |s| s.shadow_cache = false),
@@ -77,11 +78,6 @@ fn subsample(settings: &mut Settings, fill: Fill, stride: u32) {
     settings.visibility = Visibility::Subsample;
     settings.fill = fill;
     settings.stride = stride;
-}
-
-fn certified_color(settings: &mut Settings, threshold: f32) {
-    apply("balanced", settings);
-    settings.match_threshold = threshold / 255.0;
 }
 
 /// Changes what the preset changes.
