@@ -189,6 +189,16 @@ impl Settings {
     }
 }
 
+impl Settings {
+    /// The flags that make these settings out of the preset `exact`, as they are typed; empty for `exact` itself.
+    pub fn flags(&self) -> String {
+        let exact = Self::exact();
+        let changed = ROWS.iter().filter(|row| (row.get)(self) != (row.get)(&exact));
+        let flags: Vec<String> = changed.map(|row| format!("--{} {}", row.name, (row.get)(self))).collect();
+        flags.join(" ")
+    }
+}
+
 /// A named set of settings.
 pub struct Preset {
     /// Name on the command line and in the overlay.

@@ -24,7 +24,7 @@ pub fn command() -> Command {
         .args_conflicts_with_subcommands(true)
         .subcommand_precedence_over_arg(true)
         .max_term_width(120);
-    with_shared(view).subcommands([render(), info(), compare()])
+    with_shared(view).subcommands([render(), bench(), info(), compare()])
 }
 
 fn render() -> Command {
@@ -57,6 +57,37 @@ fn render() -> Command {
     with_shared(command)
 }
 
+fn bench() -> Command {
+    let folder = Arg::new("output")
+        .short('o')
+        .long("output")
+        .value_name("DIR")
+        .required(true)
+        .value_parser(value_parser!(PathBuf))
+        .help("Folder for records.json, records.csv, charts and index.html; a run that was stopped goes on from there");
+    let scenes = Arg::new("scenes")
+        .value_name("SCENE")
+        .num_args(0..)
+        .value_parser(value_parser!(PathBuf))
+        .help("Scene files [default: the built-in scene]");
+    let command = Command::new("bench")
+        .about("Measures how fast and how true every method is, and draws it")
+        .after_help(
+            "Starts from the preset exact; flags hold for every method. Without --stability or --thesis: a sweep over \
+             settings, optimisations, a walk (--path, or steps aside), and sizes. Reference: --visibility full.",
+        )
+        .arg(scenes)
+        .arg(folder)
+        .arg(switch("quick", "Fewer methods, pictures of half the size: under 30 seconds a scene"))
+        .arg(
+            switch("stability", "Error against difficulty instead: thin wires, far spheres, scales")
+                .conflicts_with_all(["thesis", "scenes"]),
+        )
+        .arg(switch("thesis", "The thesis's table instead: its methods at 1, 4, 16 and 25 rays a pixel, 640x360"))
+        .arg(switch("redraw", "Measure nothing; draw what the folder's records hold"));
+    with_options(command)
+}
+
 fn info() -> Command {
     Command::new("info")
         .about("Says what a scene holds and what it needs to be drawn")
@@ -85,13 +116,17 @@ fn compare() -> Command {
         .arg(switch("hdr", "Compare linear light, unclamped, instead of what a display shows"))
 }
 
-/// The options of every command that renders.
+/// The options of every command that renders one scene.
 fn with_shared(command: Command) -> Command {
+    with_options(command.arg(scene()))
+}
+
+/// The options of every command that renders.
+fn with_options(command: Command) -> Command {
     let option = |name: &'static str, value: &'static str| Arg::new(name).long(name).value_name(value);
     let signed = |name, value| option(name, value).allow_hyphen_values(true);
     let presets: Vec<String> = PRESETS.iter().map(|preset| format!("{}: {}", preset.name, preset.help)).collect();
     command
-        .arg(scene())
         .next_help_heading("View")
         .arg(
             option("size", "WxH").value_parser(values::size).help("Picture size [default: the scene's, else 1280x720]"),

@@ -1,7 +1,9 @@
 //! What ends a command early, and the exit code it means.
 
 use raywalk::app::AppError;
+use raywalk::measure::bench::BenchError;
 use raywalk::measure::metric::SizesDiffer;
+use raywalk::measure::records::RecordsError;
 use raywalk::picture::PictureError;
 use raywalk::scene::SceneError;
 
@@ -20,6 +22,12 @@ pub enum Failure {
     /// Pictures that cannot be compared.
     #[error("{0}; compare pictures of equal size")]
     Sizes(#[from] SizesDiffer),
+    /// A bench ended early.
+    #[error(transparent)]
+    Bench(#[from] BenchError),
+    /// Records of a bench could not be read.
+    #[error(transparent)]
+    Records(#[from] RecordsError),
     /// The scene asks for something that cannot be rendered.
     #[error("{0}")]
     Run(String),
@@ -44,7 +52,7 @@ impl Failure {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) | Self::Picture(PictureError::UnknownExtension { .. }) => Self::WRONG_USAGE,
-            Self::Interrupted => Self::INTERRUPTED,
+            Self::Interrupted | Self::Bench(BenchError::Interrupted) => Self::INTERRUPTED,
             _ => 1,
         }
     }

@@ -1,6 +1,7 @@
 //! The command line: one file a command, and what the commands share.
 
 mod arguments;
+mod bench;
 mod compare;
 mod failure;
 mod frames;
@@ -27,6 +28,7 @@ use clap::ArgMatches;
 pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     match asked.subcommand() {
         Some(("render", asked)) => render::run(asked),
+        Some(("bench", asked)) => bench::run(asked),
         Some(("info", asked)) => info::run(asked),
         Some(("compare", asked)) => compare::run(asked),
         _ => view::run(asked),

@@ -56,7 +56,8 @@ impl Reading {
             limits.set(name, value).map_err(Failure::Usage)?;
         }
         Ok(Self {
-            scene: asked.get_one("scene").cloned(),
+            // A bench has any number of scenes instead.
+            scene: asked.try_get_one("scene").ok().flatten().cloned(),
             limits,
             strict: asked.get_flag("strict"),
             quiet: asked.get_flag("quiet"),

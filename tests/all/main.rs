@@ -3,6 +3,7 @@
 mod accumulation;
 mod adaptive;
 mod adversary;
+mod bench;
 mod blit;
 mod cli;
 mod determinism;

@@ -89,7 +89,9 @@ fn long_flags(text: &str) -> BTreeSet<String> {
 #[test]
 fn every_flag_it_names_exists() {
     let mut known = long_flags("--release --example --locked");
-    for command in [&["--help"][..], &["render", "--help"], &["info", "--help"], &["compare", "--help"]] {
+    for command in
+        [&["--help"][..], &["render", "--help"], &["bench", "--help"], &["info", "--help"], &["compare", "--help"]]
+    {
         let output = Command::new(env!("CARGO_BIN_EXE_raywalk")).args(command).output().unwrap();
         known.extend(long_flags(&String::from_utf8_lossy(&output.stdout)));
     }

@@ -65,6 +65,15 @@ pub fn load_embedded(
     read(&Input { path, bytes: &bytes }, files, options)
 }
 
+/// Loads a scene from text that was made rather than read; `name` tells its format, and it can name no other file.
+///
+/// # Errors
+/// As for [`load`].
+pub fn load_text(name: &str, text: &str, options: &LoadOptions) -> Result<Scene, SceneError> {
+    let input = Input { path: Path::new(name), bytes: text.as_bytes() };
+    read(&input, Files::embedded(&[], &options.limits), options)
+}
+
 fn read(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, SceneError> {
     let file_name = input.path.file_name().unwrap_or_default().to_string_lossy();
     let format = find(&file_name).ok_or_else(|| SceneError::UnknownFormat {

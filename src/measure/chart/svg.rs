@@ -1,0 +1,116 @@
+//! SVG elements as text.
+
+use super::palette::{DARK, STYLE, class, mark};
+use std::fmt::Write;
+
+/// Where a text starts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// Elements so far.
+#[derive(Clone, Debug, Default)]
+pub struct Svg(pub String);
+
+/// Text with the signs that XML keeps for itself replaced.
+pub fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// A file of its own.
+pub fn document((width, height): (f64, f64), title: &str, body: &str) -> String {
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n\
+         <title>{}</title>\n<style>{STYLE}\n@media (prefers-color-scheme: dark) {{{DARK}}}</style>\n{body}</svg>\n",
+        escaped(title)
+    )
+}
+
+/// The width of a text in pixels, on the wide side: what is really drawn depends on the viewer's fonts.
+pub fn text_width(text: &str, font_size: f64) -> f64 {
+    let width = |c: char| match c {
+        'i' | 'j' | 'l' | '.' | ',' | ':' | '\'' | '|' | '\u{202f}' => 0.3,
+        'm' | 'w' | 'M' | 'W' | '%' => 0.9,
+        ' ' | 'f' | 't' | 'r' | '(' | ')' | '/' | '-' | '[' | ']' => 0.4,
+        'A'..='Z' => 0.7,
+        _ => 0.57,
+    };
+    font_size * text.chars().map(width).sum::<f64>()
+}
+
+impl Svg {
+    fn add(&mut self, element: std::fmt::Arguments<'_>) {
+        // Writing to a string cannot fail.
+        let _ = self.0.write_fmt(element);
+        self.0.push('\n');
+    }
+
+    /// The paper that all is drawn on, and its title.
+    pub fn on_paper((width, height): (f64, f64), title: &str, note: &str) -> Self {
+        let mut svg = Self::default();
+        svg.rectangle(0.0, 0.0, width, height, "paper");
+        svg.text(18.0, 26.0, Anchor::Start, "title", title);
+        svg.text(18.0, 45.0, Anchor::Start, "note", note);
+        svg
+    }
+
+    pub fn line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), class: &str) {
+        self.add(format_args!(r#"<line class="{class}" x1="{x1:.1}" y1="{y1:.1}" x2="{x2:.1}" y2="{y2:.1}"/>"#));
+    }
+
+    pub fn rectangle(&mut self, x: f64, y: f64, width: f64, height: f64, class: &str) {
+        self.add(format_args!(
+            r#"<rect class="{class}" x="{x:.1}" y="{y:.1}" width="{width:.1}" height="{height:.1}"/>"#
+        ));
+    }
+
+    /// A rectangle that tells what it is when pointed at.
+    pub fn part(&mut self, x: f64, y: f64, width: f64, height: f64, class: &str, told: &str) {
+        self.add(format_args!(
+            r#"<rect class="{class}" x="{x:.1}" y="{y:.1}" width="{width:.1}" height="{height:.1}"><title>{}</title></rect>"#,
+            escaped(told)
+        ));
+    }
+
+    pub fn text(&mut self, x: f64, y: f64, anchor: Anchor, class: &str, text: &str) {
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        self.add(format_args!(
+            r#"<text class="{class}" x="{x:.1}" y="{y:.1}" text-anchor="{anchor}">{}</text>"#,
+            escaped(text)
+        ));
+    }
+
+    /// Text that runs upwards, centred on (x, y).
+    pub fn text_upwards(&mut self, x: f64, y: f64, class: &str, text: &str) {
+        self.add(format_args!(
+            r#"<text class="{class}" transform="translate({x:.1} {y:.1}) rotate(-90)" text-anchor="middle">{}</text>"#,
+            escaped(text)
+        ));
+    }
+
+    /// A line through points.
+    pub fn polyline(&mut self, points: &[(f64, f64)], class: &str, dashes: &str) {
+        let points: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+        let dashes = if dashes == "none" { String::new() } else { format!(r#" stroke-dasharray="{dashes}""#) };
+        self.add(format_args!(r#"<polyline class="{class}"{dashes} points="{}"/>"#, points.join(" ")));
+    }
+
+    /// The mark of a family at (x, y), which tells what it is when pointed at. `point` names it on the page.
+    pub fn mark(&mut self, (x, y): (f64, f64), family: &str, faint: bool, told: &str, point: Option<usize>) {
+        let faint = if faint { " faint" } else { "" };
+        let point = point.map(|point| format!(r#" data-point="{point}" tabindex="0""#)).unwrap_or_default();
+        self.add(format_args!(
+            r#"<g class="point"{point}><title>{}</title><path class="{}{faint}" transform="translate({x:.1} {y:.1})" d="{}"/></g>"#,
+            escaped(told),
+            class(family),
+            mark(family)
+        ));
+    }
+}

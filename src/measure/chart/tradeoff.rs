@@ -1,0 +1,172 @@
+//! Time against error, a panel a metric: the choice that a user of the program has.
+
+use super::axis::{Area, Axis};
+use super::labels::Labels;
+use super::number::short;
+use super::palette::class;
+use super::svg::{Anchor, Svg, text_width};
+use super::{Chart, by_view, file_name, view_title};
+use crate::measure::records::{Part, Records, Row};
+
+const SIZE: (f64, f64) = (1180.0, 560.0);
+/// Height of one line within the rows for what has no error at all.
+const EXACT_LINE: f64 = 17.0;
+
+/// A metric's panel: its name, its axis title, and where it starts.
+const PANELS: [(&str, &str, f64); 2] =
+    [("flip", "mean FLIP [0 to 1, logarithmic]", 82.0), ("pixels_off", "visibly wrong pixels [%, logarithmic]", 666.0)];
+
+/// One chart for every view that settings were swept on.
+pub fn charts(records: &Records) -> Vec<Chart> {
+    let views = by_view(records, Part::Settings).into_iter();
+    let chart = |(view, rows): ((&str, &str), Vec<&Row>)| {
+        let first = rows.first()?;
+        let title = format!("Time against error: {}", view_title(view));
+        let note = format!(
+            "{}x{}, median of {} frames or more; whiskers: 5 % to 95 % of frames; dashed: the best error for the time; faint: \
+             something else is faster and no worse; visibly wrong: off by more than 2/255.",
+            first.key.width,
+            first.key.height,
+            rows.iter().filter(|row| row.cut_off_ms.is_none()).map(|row| row.frame_ms.len()).min().unwrap_or_default()
+        );
+        let mut svg = Svg::on_paper(SIZE, &title, &note);
+        for panel in PANELS {
+            draw_panel(&mut svg, records, &rows, panel);
+        }
+        Some(Chart { name: file_name("tradeoff", view), section: view_title(view), title, size: SIZE, body: svg.0 })
+    };
+    views.filter_map(chart).collect()
+}
+
+/// A row's error in the panel's unit, where it was compared and timed.
+fn error_of(row: &Row, metric: &str) -> Option<f64> {
+    let error = row.error(metric).filter(|_| !row.frame_ms.is_empty())?;
+    let pixels = f64::from(row.key.width) * f64::from(row.key.height);
+    Some(if metric == "pixels_off" { 100.0 * error / pixels } else { error })
+}
+
+fn draw_panel(svg: &mut Svg, records: &Records, rows: &[&Row], (metric, title, left): (&str, &str, f64)) {
+    let area = Area { left, top: 92.0, right: left + 490.0, bottom: SIZE.1 - 62.0 };
+    let points: Vec<(&Row, f64)> = rows.iter().filter_map(|row| Some((*row, error_of(row, metric)?))).collect();
+    let times = points.iter().flat_map(|(row, _)| [row.frame_ms.p5, row.frame_ms.median, row.frame_ms.p95]);
+    let x = Axis::logarithmic(times, area.left + 8.0, area.right - 8.0);
+    // What is exact stands line by line, so that each can be read.
+    let exact: Vec<&Row> = points.iter().filter(|(_, error)| *error == 0.0).map(|(row, _)| *row).collect();
+    let band = EXACT_LINE * (exact.len() as f64 + 1.0);
+    let errors = Area { bottom: area.bottom - band, ..area };
+    let y = Axis::logarithmic(points.iter().map(|(_, error)| *error), errors.bottom - 10.0, errors.top + 10.0);
+    let place = |row: &Row, error: f64| {
+        let line = exact.iter().position(|other| std::ptr::eq(*other, row)).unwrap_or_default() as f64;
+        let height = if error > 0.0 { y.at(error) } else { errors.bottom + EXACT_LINE * (line + 1.0) };
+        (x.at(row.frame_ms.median), height)
+    };
+
+    svg.rectangle(area.left, errors.bottom, area.right - area.left, band, "band");
+    area.axis_below(svg, &x, "median time of a frame [ms], logarithmic");
+    errors.axis_left(svg, &y, title);
+    svg.text(area.left - 8.0, errors.bottom + band / 2.0 + 4.0, Anchor::End, "tick", "exact");
+    speed_ups(svg, &area, &x, rows);
+    area.frame(svg);
+
+    let front = front(&points);
+    let corners: Vec<(f64, f64)> = front.iter().map(|&i| place(points[i].0, points[i].1)).collect();
+    svg.polyline(&corners, "front", "none");
+    let mut labels = Labels::within(Area {
+        left: area.left + 2.0,
+        top: area.top + 2.0,
+        right: area.right - 2.0,
+        bottom: area.bottom - 1.0,
+    });
+    for &(row, error) in &points {
+        let at = place(row, error);
+        labels.avoid(at);
+        labels.avoid_level(x.at(row.frame_ms.p5), x.at(row.frame_ms.p95), at.1);
+    }
+    corners.windows(2).for_each(|ends| labels.avoid_line(ends[0], ends[1]));
+    for (i, &(row, error)) in points.iter().enumerate() {
+        let at = place(row, error);
+        let faint = !front.contains(&i);
+        let family = class(&row.family);
+        let shade = if faint { " faint" } else { "" };
+        let ends = (x.at(row.frame_ms.p5), x.at(row.frame_ms.p95));
+        svg.line((ends.0, at.1), (ends.1, at.1), &format!("{family} whisker{shade}"));
+        let number = records.rows.iter().position(|other| std::ptr::eq(other, row));
+        svg.mark(at, &row.family, faint, &told(row), number);
+    }
+    // What must be found goes first: the front, the presets and the reference.
+    let named = |i: &usize| ["full", "exact", "balanced", "fast"].contains(&points[*i].0.key.method.as_str());
+    let mut order = front.clone();
+    order.extend((0..points.len()).filter(|i| named(i) && !front.contains(i)));
+    order.extend((0..points.len()).filter(|i| !named(i) && !front.contains(i)));
+    for i in order {
+        let (row, error) = points[i];
+        let (at, y) = place(row, error);
+        if error > 0.0 {
+            labels.place(svg, (at, y), &row.key.method);
+        } else {
+            beside_whisker(svg, &area, (x.at(row.frame_ms.p5), x.at(row.frame_ms.p95).max(at), y), &row.key.method);
+        }
+    }
+}
+
+/// A label at the right end of a whisker, or at its left end where the area ends before the label.
+fn beside_whisker(svg: &mut Svg, area: &Area, (from, to, y): (f64, f64, f64), text: &str) {
+    if to + 12.0 + text_width(text, 13.0) < area.right {
+        svg.text(to + 10.0, y + 4.5, Anchor::Start, "", text);
+    } else {
+        svg.text(from - 10.0, y + 4.5, Anchor::End, "", text);
+    }
+}
+
+/// A second row of ticks, above: how many times faster than a ray for every pixel.
+fn speed_ups(svg: &mut Svg, area: &Area, x: &Axis, rows: &[&Row]) {
+    let Some(full) = rows.iter().find(|row| row.key.method == "full" && !row.frame_ms.is_empty()) else { return };
+    let full_at = x.at(full.frame_ms.median);
+    svg.text(area.left, area.top - 26.0, Anchor::Start, "note", "times as fast as a ray for every pixel (full):");
+    let mut last = f64::INFINITY;
+    for factor in [0.2, 0.25, 0.33, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0, 100.0] {
+        let time = full.frame_ms.median / factor;
+        let at = x.at(time);
+        let inside = at > area.left + 12.0 && at < area.right - 12.0;
+        // Factors rise to the left. What would crowd is left out, but never the place of full itself.
+        let clears_full = factor == 1.0 || (at - full_at).abs() > 34.0;
+        if inside && clears_full && last - at > 34.0 {
+            svg.line((at, area.top - 4.0), (at, area.top), "axis");
+            svg.text(at, area.top - 8.0, Anchor::Middle, "tick", &format!("{factor}x"));
+            last = at;
+        }
+    }
+}
+
+/// What nothing beats in both time and error, by time.
+fn front(points: &[(&Row, f64)]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    let time = |i: usize| points[i].0.frame_ms.median;
+    order.sort_by(|&a, &b| time(a).total_cmp(&time(b)).then(points[a].1.total_cmp(&points[b].1)));
+    let mut least = f64::INFINITY;
+    order.retain(|&i| {
+        let better = points[i].1 < least;
+        least = least.min(points[i].1);
+        better
+    });
+    order
+}
+
+/// What is told of a point.
+pub fn told(row: &Row) -> String {
+    let flags = if row.flags.is_empty() { "every default".to_owned() } else { row.flags.clone() };
+    let score = |name: &str| row.error(name).map_or("-".to_owned(), short);
+    format!(
+        "{}\n{flags}\nframe {} ms ({} to {}), CPU {} ms\nFLIP {}, RMSE {}, PSNR {} dB, greatest error {}\n{} pixels visibly wrong",
+        row.key.method,
+        short(row.frame_ms.median),
+        short(row.frame_ms.p5),
+        short(row.frame_ms.p95),
+        short(row.cpu_ms.min),
+        score("flip"),
+        score("rmse"),
+        score("psnr"),
+        score("max_abs"),
+        score("pixels_off"),
+    )
+}

@@ -1,0 +1,166 @@
+//! What a bench has measured, on disk: `records.json` for going on and drawing, `records.csv` for spreadsheets.
+//!
+//! The file is replaced as a whole after every row, so that a run that is killed loses the row in work and no more.
+
+mod csv;
+mod environment;
+mod row;
+
+pub use csv::WRONG_SHARE;
+pub use environment::{Environment, fingerprint};
+pub use row::{FrameError, Key, Part, Row, Samples};
+
+use crate::picture::{PendingFile, PictureError};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Version of the file's layout.
+const VERSION: u32 = 1;
+
+/// Why records could not be read or written. The text is one line.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordsError {
+    /// The folder or a file in it.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The file could not be written.
+    #[error(transparent)]
+    Write(#[from] PictureError),
+    /// The file is none of ours.
+    #[error("{}: not the records of a bench: {message}; choose another folder", path.display())]
+    Invalid {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        message: String,
+    },
+    /// Measured under other conditions.
+    #[error("{}: was measured with another {what} ({before}, now {now}); choose another folder, or delete the file", path.display())]
+    Differs {
+        /// The file.
+        path: PathBuf,
+        /// What differs.
+        what: String,
+        /// What it was.
+        before: String,
+        /// What it is.
+        now: String,
+    },
+}
+
+/// The records of one folder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Records {
+    version: u32,
+    /// Where and with what it was measured.
+    pub environment: Environment,
+    /// In the order in which they were begun.
+    pub rows: Vec<Row>,
+}
+
+impl Records {
+    /// No rows yet.
+    pub fn new(environment: Environment) -> Self {
+        Self { version: VERSION, environment, rows: Vec::new() }
+    }
+
+    /// The file in `folder`.
+    pub fn file(folder: &Path) -> PathBuf {
+        folder.join("records.json")
+    }
+
+    /// Reads the records in `folder`; `None` where there are none.
+    ///
+    /// # Errors
+    /// [`RecordsError::Io`], [`RecordsError::Invalid`].
+    pub fn load(folder: &Path) -> Result<Option<Self>, RecordsError> {
+        let path = Self::file(folder);
+        let text = match fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(source) => return Err(RecordsError::Io { path, source }),
+        };
+        let records: Self = serde_json::from_str(&text)
+            .map_err(|error| RecordsError::Invalid { path: path.clone(), message: error.to_string() })?;
+        if records.version == VERSION {
+            return Ok(Some(records));
+        }
+        Err(RecordsError::Invalid { path, message: format!("version {}, known is {VERSION}", records.version) })
+    }
+
+    /// The records to go on with in `folder`, which is made if it is not there: those it holds, or none.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load); [`RecordsError::Differs`] where they were made elsewhere or with something else.
+    pub fn resume(folder: &Path, environment: Environment) -> Result<Self, RecordsError> {
+        let io = |source| RecordsError::Io { path: folder.to_owned(), source };
+        fs::create_dir_all(folder).map_err(io)?;
+        remove_leftovers(folder).map_err(io)?;
+        let Some(mut records) = Self::load(folder)? else { return Ok(Self::new(environment)) };
+        if let Some((what, before, now)) = records.environment.difference(&environment) {
+            return Err(RecordsError::Differs { path: Self::file(folder), what, before, now });
+        }
+        records.environment.scenes.extend(environment.scenes);
+        Ok(records)
+    }
+
+    /// Replaces `records.json` in `folder`; whoever reads it meets the old file or the new one.
+    ///
+    /// # Errors
+    /// [`RecordsError::Write`].
+    pub fn save(&self, folder: &Path) -> Result<(), RecordsError> {
+        let file = PendingFile::create(&Self::file(folder))?;
+        let encode_error = |error: serde_json::Error| PictureError::Encode(error.to_string());
+        Ok(file.commit(|sink| {
+            serde_json::to_writer_pretty(&mut *sink, self).map_err(encode_error)?;
+            Ok(writeln!(sink)?)
+        })?)
+    }
+
+    /// Writes `records.csv` in `folder`, a line a row under one line of names.
+    ///
+    /// # Errors
+    /// [`RecordsError::Write`].
+    pub fn save_csv(&self, folder: &Path) -> Result<(), RecordsError> {
+        let file = PendingFile::create(&folder.join("records.csv"))?;
+        Ok(file.commit(|sink| Ok(sink.write_all(csv::table(self).as_bytes())?))?)
+    }
+
+    /// The place of the row with this key, which is added if it is new.
+    pub fn place(&mut self, key: &Key, new: impl FnOnce() -> Row) -> usize {
+        self.rows.iter().position(|row| row.key == *key).unwrap_or_else(|| {
+            self.rows.push(new());
+            self.rows.len() - 1
+        })
+    }
+
+    /// The rows of one part.
+    pub fn of(&self, part: Part) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(move |row| row.key.part == part)
+    }
+}
+
+/// A file name made of parts, with nothing in it that a file system or a page could stumble over.
+pub fn file_name(parts: &[&str]) -> String {
+    let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '.' | '-') { c.to_ascii_lowercase() } else { '_' };
+    parts.iter().map(|part| part.chars().map(safe).collect::<String>()).collect::<Vec<_>>().join("-")
+}
+
+/// Removes what a killed run had begun to write.
+fn remove_leftovers(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        if name.starts_with(".records.") && name.ends_with(".part") {
+            fs::remove_file(path)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,113 @@
+//! One piece of a bench: methods that are compared on one view, or along one walk.
+
+use super::Method;
+use crate::measure::records::Part;
+use crate::scene::{Camera, Scene};
+use crate::settings::Settings;
+use std::ops::Range;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// What is looked at.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// The scene's name in records.
+    pub name: String,
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// What the camera is called.
+    pub camera_name: String,
+    /// The camera.
+    pub camera: Camera,
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+}
+
+/// What a method's picture is held against.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// The scene, which may be another than the one measured.
+    pub scene: Arc<Scene>,
+    /// Its camera.
+    pub camera: Camera,
+    /// How it is rendered.
+    pub settings: Settings,
+}
+
+/// How pictures are judged.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Judge {
+    /// Not at all: only time counts.
+    Time,
+    /// By every metric.
+    Metrics,
+    /// By the share of visibly wrong pixels among those where the reference shows one of these objects, or among all.
+    Wrong(Option<Range<u32>>),
+}
+
+/// Methods measured against each other, in alternation.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Which chart it feeds.
+    pub part: Part,
+    /// What is looked at.
+    pub view: View,
+    /// The chart's other axis, such as a wire's width; `None` where it has none.
+    pub at: Option<f64>,
+    /// What pictures are held against.
+    pub reference: Reference,
+    /// How they are judged.
+    pub judge: Judge,
+    /// Whether pictures and maps of their errors are kept.
+    pub keeps_pictures: bool,
+    /// The methods.
+    pub methods: Vec<Method>,
+    /// Visits of each method, at most; 0 looks at pictures alone.
+    pub rounds: u32,
+    /// No new visit starts after this time; each method is looked at once in any case.
+    pub budget: Duration,
+    /// A frame that takes longer is cut off, and its method left.
+    pub longest_frame: Duration,
+}
+
+/// Methods along a moving camera: their errors from frame to frame.
+#[derive(Clone, Debug)]
+pub struct Walk {
+    /// What is looked at; its camera is the first frame's.
+    pub view: View,
+    /// The camera of every frame.
+    pub cameras: Vec<Camera>,
+    /// How the reference is rendered.
+    pub reference: Settings,
+    /// The methods.
+    pub methods: Vec<Method>,
+    /// As many frames are followed as probably fit into this time.
+    pub budget: Duration,
+}
+
+/// One piece of a bench.
+#[derive(Clone, Debug)]
+pub enum Job {
+    /// On one view.
+    Compare(Comparison),
+    /// Along a path.
+    Walk(Walk),
+}
+
+impl Job {
+    /// How many steps of progress it is.
+    pub fn steps(&self) -> u64 {
+        match self {
+            Self::Compare(job) => job.methods.len() as u64 * u64::from(1 + job.rounds),
+            Self::Walk(job) => (job.methods.len() * job.cameras.len()) as u64,
+        }
+    }
+
+    /// The scene it looks at.
+    pub fn scene_name(&self) -> &str {
+        match self {
+            Self::Compare(job) => &job.view.name,
+            Self::Walk(job) => &job.view.name,
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! The methods that benches compare: settings with a name.
+
+use crate::settings::{Fill, PRESETS, Preset, ROWS, Settings, SimdLevel, SphereCache, Visibility};
+
+/// Settings with a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Method {
+    /// Methods of one family share a colour and a mark in charts.
+    pub family: &'static str,
+    /// Unique within its chart.
+    pub name: String,
+    /// The settings.
+    pub settings: Settings,
+}
+
+/// Changes settings.
+pub type Change = fn(&mut Settings);
+
+/// A family, a name, and what is changed; the last column says whether a quick sweep has it.
+type Entry = (&'static str, &'static str, Change, bool);
+
+/// What a sweep tries, the reference first.
+const SWEEP: &[Entry] = &[
+    ("full", "full", |s| s.visibility = Visibility::Full, true),
+    ("exact", "exact", |_| (), true),
+    ("exact", "min-weight 1/512", |s| s.min_weight = 1.0 / 512.0, false),
+    ("exact", "min-weight 1/64", |s| s.min_weight = 1.0 / 64.0, false),
+    ("exact", "min-weight 1/16", |s| s.min_weight = 1.0 / 16.0, false),
+    ("thesis cache", "thesis sphere cache", |s| s.sphere_cache = SphereCache::Thesis, true),
+    ("balanced", "balanced", |s| apply("balanced", s), true),
+    ("balanced", "interpolated light", |s| s.fill = Fill::Color, false),
+    ("hit", "hit 2", |s| subsample(s, Fill::Hit, 2), true),
+    ("hit", "hit 4", |s| subsample(s, Fill::Hit, 4), false),
+    ("hit", "hit 8", |s| subsample(s, Fill::Hit, 8), true),
+    ("hit", "hit 16", |s| subsample(s, Fill::Hit, 16), true),
+    ("color", "color 2", |s| subsample(s, Fill::Color, 2), true),
+    ("color", "color 4", |s| subsample(s, Fill::Color, 4), false),
+    ("color", "color 8", |s| subsample(s, Fill::Color, 8), true),
+    ("color", "color 16", |s| subsample(s, Fill::Color, 16), true),
+    ("fast", "fast", |s| apply("fast", s), true),
+];
+
+/// What stability curves show.
+const STABILITY: &[Entry] = &[
+    ("full", "full", |s| s.visibility = Visibility::Full, true),
+    ("exact", "exact", |_| (), true),
+    ("balanced", "balanced", |s| apply("balanced", s), true),
+    ("hit", "hit 2", |s| subsample(s, Fill::Hit, 2), true),
+    ("hit", "hit 4", |s| subsample(s, Fill::Hit, 4), false),
+    ("hit", "hit 8", |s| subsample(s, Fill::Hit, 8), true),
+    ("hit", "hit 16", |s| subsample(s, Fill::Hit, 16), false),
+    ("color", "color 2", |s| subsample(s, Fill::Color, 2), false),
+    ("color", "color 8", |s| subsample(s, Fill::Color, 8), true),
+    ("fast", "fast", |s| apply("fast", s), true),
+    ("thesis cache", "thesis sphere cache", |s| s.sphere_cache = SphereCache::Thesis, true),
+];
+
+/// What is followed along a path.
+const WALK: &[Entry] = &[
+    ("exact", "exact", |_| (), true),
+    ("balanced", "balanced", |s| apply("balanced", s), true),
+    ("hit", "hit 8", |s| subsample(s, Fill::Hit, 8), true),
+    ("color", "color 8", |s| subsample(s, Fill::Color, 8), true),
+    ("fast", "fast", |s| apply("fast", s), true),
+];
+
+/// An optimisation that keeps the picture: its name, and how it is taken away.
+pub const OPTIMISATIONS: &[(&str, Change)] = &[
+    ("certified visibility", |s| s.visibility = Visibility::Full),
+    ("bounding volumes", |s| s.bvh = false),
+    ("shadow-object cache", |s| s.shadow_cache = false),
+    ("cached sphere terms", |s| s.sphere_cache = SphereCache::Off),
+    ("SIMD", |s| s.simd = SimdLevel::Off),
+    ("threads", |s| s.threads = 1),
+];
+
+fn subsample(settings: &mut Settings, fill: Fill, stride: u32) {
+    settings.visibility = Visibility::Subsample;
+    settings.fill = fill;
+    settings.stride = stride;
+}
+
+/// Changes what the preset changes.
+fn apply(name: &str, settings: &mut Settings) {
+    let preset = PRESETS.iter().find(|preset| preset.name == name);
+    let wanted = preset.map_or_else(Settings::exact, |preset: &Preset| (preset.settings)());
+    for row in ROWS {
+        if (row.get)(&wanted) != (row.get)(&Settings::exact()) {
+            // What a row prints it also reads.
+            let _ = (row.set)(settings, &(row.get)(&wanted));
+        }
+    }
+}
+
+fn made_of(entries: &[Entry], base: &Settings, quick: bool) -> Vec<Method> {
+    let wanted = entries.iter().filter(|(.., in_quick)| *in_quick || !quick);
+    let method = |&(family, name, change, _): &Entry| {
+        let mut settings = base.clone();
+        change(&mut settings);
+        Method { family, name: name.to_owned(), settings }
+    };
+    wanted.map(method).collect()
+}
+
+/// The methods of a sweep over settings, each `base` with a change.
+pub fn sweep_methods(base: &Settings, quick: bool) -> Vec<Method> {
+    made_of(SWEEP, base, quick)
+}
+
+/// The methods of stability curves.
+pub fn stability_methods(base: &Settings, quick: bool) -> Vec<Method> {
+    made_of(STABILITY, base, quick)
+}
+
+/// The methods of a walk.
+pub fn walk_methods(base: &Settings) -> Vec<Method> {
+    made_of(WALK, base, false)
+}
+
+/// All optimisations, none, each alone, and all but each.
+pub fn optimisations(base: &Settings) -> Vec<Method> {
+    let method = |name: String, kept: &dyn Fn(usize) -> bool| {
+        let mut settings = base.clone();
+        OPTIMISATIONS.iter().enumerate().filter(|(i, _)| !kept(*i)).for_each(|(_, (_, off))| off(&mut settings));
+        Method { family: "exact", name, settings }
+    };
+    let mut methods = vec![method("all".to_owned(), &|_| true), method("none".to_owned(), &|_| false)];
+    for (i, (name, _)) in OPTIMISATIONS.iter().enumerate() {
+        methods.push(method(format!("only {name}"), &|other| other == i));
+        methods.push(method(format!("without {name}"), &|other| other != i));
+    }
+    methods
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_settings_differ() {
+        let base = Settings::exact();
+        for methods in [sweep_methods(&base, false), stability_methods(&base, false), walk_methods(&base)] {
+            for (i, method) in methods.iter().enumerate() {
+                for other in &methods[..i] {
+                    assert_ne!(method.name, other.name);
+                    assert_ne!(method.settings, other.settings, "{} and {}", method.name, other.name);
+                }
+            }
+        }
+        assert_eq!(optimisations(&base).len(), 2 + 2 * OPTIMISATIONS.len());
+    }
+
+    #[test]
+    fn presets_are_what_they_are_elsewhere_and_keep_what_was_asked_for() {
+        let base = Settings { shadows: false, ..Settings::exact() };
+        let methods = sweep_methods(&base, false);
+        let fast = methods.iter().find(|method| method.name == "fast").expect("listed");
+        assert_eq!(fast.settings, Settings { shadows: false, ..Settings::fast() });
+        assert_eq!(base.flags(), "--shadows off");
+    }
+}

@@ -1,0 +1,101 @@
+//! The jobs of one scene.
+
+use super::method::{optimisations, sweep_methods, walk_methods};
+use super::{Comparison, Effort, Job, Judge, Method, Reference, View, Walk};
+use crate::measure::records::Part;
+use crate::scene::Camera;
+use crate::settings::{Settings, Visibility};
+use std::time::Duration;
+
+/// Frames of a walk that no path was given for.
+const STEPS: u32 = 36;
+/// How far such a walk moves from frame to frame, in pixels of what is looked at.
+const STEP_PIXELS: f32 = 0.7;
+
+/// Settings against error, optimisations one by one, errors along a walk, and time against the number of pixels.
+/// `path` holds the cameras of a path; without one the camera takes some steps aside.
+pub fn of_scene(view: &View, base: &Settings, path: Option<Vec<Camera>>, effort: &Effort) -> Vec<Job> {
+    let full = Settings { visibility: Visibility::Full, ..base.clone() };
+    let reference = Reference { scene: view.scene.clone(), camera: view.camera, settings: full.clone() };
+    let comparison = |part, (width, height): (u32, u32), at, judge, methods: Vec<Method>, percent| {
+        let budget = effort.share(percent);
+        Job::Compare(Comparison {
+            part,
+            view: View { size: (width.max(1), height.max(1)), ..view.clone() },
+            at,
+            reference: reference.clone(),
+            judge,
+            keeps_pictures: part == Part::Settings,
+            // Slow methods must not eat the time of all; but of optimisations the slowest is what others are held against.
+            longest_frame: match part {
+                Part::Optimisations => budget / SLOWEST,
+                Part::Pixels => budget / 2,
+                _ => budget / (2 * methods.len() as u32),
+            },
+            methods,
+            rounds: effort.rounds,
+            budget,
+        })
+    };
+    let size = effort.size(view.size);
+    let half = (size.0 / 2, size.1 / 2);
+    let mut jobs = vec![
+        comparison(Part::Settings, size, None, Judge::Metrics, sweep_methods(base, effort.quick), 60),
+        comparison(
+            Part::Optimisations,
+            bare_size(view, half, effort.share(OPTIMISATIONS_SHARE) / SLOWEST),
+            None,
+            Judge::Time,
+            optimisations(base),
+            OPTIMISATIONS_SHARE,
+        ),
+    ];
+    let small = View { size: (half.0.max(1), half.1.max(1)), ..view.clone() };
+    jobs.push(Job::Walk(Walk {
+        cameras: path.unwrap_or_else(|| steps_aside(&view.camera, small.size.1)),
+        view: small,
+        reference: full.clone(),
+        methods: walk_methods(base),
+        budget: effort.share(12),
+    }));
+    for sides in [8, 4, 2, 1] {
+        let scaled = (size.0 * 3 / (2 * sides), size.1 * 3 / (2 * sides));
+        let pixels = f64::from(scaled.0.max(1)) * f64::from(scaled.1.max(1));
+        let methods = sweep_methods(base, true).into_iter().filter(|m| GROWING.contains(&m.name.as_str())).collect();
+        jobs.push(comparison(Part::Pixels, scaled, Some(pixels), Judge::Time, methods, 3));
+    }
+    jobs
+}
+
+/// The part of a scene's time that optimisations are given, in per cent, and the part of that which the slowest frame,
+/// the one without any of them, may take.
+const OPTIMISATIONS_SHARE: u32 = 16;
+const SLOWEST: u32 = 8;
+
+/// A size at which a frame without any optimisation should end within `longest`: `size`, or a smaller one of its shape.
+fn bare_size(view: &View, size: (u32, u32), longest: Duration) -> (u32, u32) {
+    /// Seconds to test one primitive in scalar code, on the slow side, and rays a pixel.
+    const TEST: f64 = 4e-9;
+    const RAYS: f64 = 6.0;
+    /// Fewer pixels say nothing about pictures.
+    const LEAST: f64 = 64.0 * 36.0;
+    let pixels = f64::from(size.0) * f64::from(size.1);
+    let affordable = longest.as_secs_f64() / (view.scene.geometry.len().max(1) as f64 * RAYS * TEST);
+    let scale = (affordable.max(LEAST) / pixels.max(1.0)).sqrt().min(1.0);
+    let scaled = |side: u32| ((f64::from(side) * scale).round() as u32).max(1);
+    (scaled(size.0), scaled(size.1))
+}
+
+/// The methods whose growth is drawn.
+const GROWING: [&str; 4] = ["full", "exact", "balanced", "fast"];
+
+/// A walk to the right that moves what is looked at by a fraction of a pixel each frame: edges cross pixels one by one.
+fn steps_aside(camera: &Camera, height: u32) -> Vec<Camera> {
+    let frame = camera.frame(1, 1);
+    let pixel = 2.0 * frame.up * camera.eye.distance(camera.look_at) / height as f32;
+    let right = frame.right.normalize_or_zero() * pixel.length() * STEP_PIXELS;
+    let at = |step: u32| right * step as f32;
+    (0..STEPS)
+        .map(|step| Camera { eye: camera.eye + at(step), look_at: camera.look_at + at(step), ..*camera })
+        .collect()
+}

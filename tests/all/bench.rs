@@ -1,0 +1,174 @@
+//! Benches: what was measured is never measured again, and what is drawn can be read.
+
+use super::temporary::Folder;
+use raywalk::measure::bench::{Bench, BenchError, Listener};
+use raywalk::measure::records::{Environment, Part, Records, RecordsError};
+use raywalk::measure::sweep::{Effort, Job, View, of_scene};
+use raywalk::measure::{page, stability, thesis};
+use raywalk::render::CancelToken;
+use raywalk::scene::{LoadOptions, load_text};
+use raywalk::settings::Settings;
+use resvg::usvg;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+const SCENE: &str = r#"{ "version": 1, "camera": { "position": [0, 1, 4], "look_at": [0, 0, 0] },
+    "lights": [ { "type": "point", "position": [3, 5, 4] } ],
+    "objects": [ { "type": "sphere", "center": [0, 0, 0], "radius": 1 },
+                 { "type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0] } ] }"#;
+
+const TINY: Effort = Effort { name: "tiny", quick: true, rounds: 1, scene: Duration::from_secs(20) };
+
+/// Stops a bench at a step.
+struct StopAt(u64, CancelToken);
+
+impl Listener for StopAt {
+    fn at(&self, done: u64, _: &str) {
+        if done >= self.0 {
+            self.1.cancel();
+        }
+    }
+}
+
+fn environment() -> Environment {
+    Environment::here(&Settings::exact(), TINY.name)
+}
+
+/// A scene's jobs at 64x36.
+fn jobs() -> Vec<Job> {
+    let scene = Arc::new(load_text("a & <b>.json", SCENE, &LoadOptions::default()).expect("a valid scene"));
+    let camera = scene.cameras[0].camera;
+    let (name, camera_name) = ("a & <b>".to_owned(), "default".to_owned());
+    of_scene(&View { name, scene, camera_name, camera, size: (128, 72) }, &Settings::exact(), None, &TINY)
+}
+
+/// Runs `jobs` until step `stop`.
+fn run(folder: &Path, jobs: &[Job], stop: u64) -> Result<Records, BenchError> {
+    let records = Records::resume(folder, environment())?;
+    let token = CancelToken::default();
+    let listener = StopAt(stop, token.clone());
+    let mut bench = Bench::new(folder.to_owned(), records, token, &listener);
+    bench.run(jobs)?;
+    Ok(bench.records)
+}
+
+fn load(folder: &Path) -> Records {
+    Records::load(folder).expect("readable").expect("there are records")
+}
+
+#[test]
+fn a_bench_that_was_stopped_goes_on_and_measures_nothing_twice() {
+    let (folder, jobs) = (Folder::new(), jobs());
+    let mut last = 0;
+    for stop in [4, 25, 60] {
+        let stopped = run(folder.path(), &jobs, stop);
+        assert!(matches!(stopped, Err(BenchError::Interrupted)), "step {stop}: {stopped:?}");
+        let rows = load(folder.path()).rows.len();
+        assert!(rows > last, "{rows} rows at step {stop}, {last} before");
+        last = rows;
+        // What a killed process leaves behind.
+        folder.write(".records.json.7-0.part", "{ \"version\": 1, \"rows\": [");
+    }
+    let kept: Vec<_> = load(folder.path()).rows.into_iter().filter(|row| row.complete).collect();
+    assert!(!kept.is_empty());
+    let records = run(folder.path(), &jobs, u64::MAX).expect("nothing stops it");
+    for row in kept {
+        assert!(records.rows.contains(&row), "{:?} was measured again", row.key);
+    }
+    assert!(records.rows.iter().all(|row| row.complete));
+    assert_eq!(run(folder.path(), &jobs, u64::MAX).expect("nothing is left to do"), load(folder.path()));
+    let leftovers = fs::read_dir(folder.path())
+        .expect("it exists")
+        .filter(|file| file.as_ref().expect("readable").file_name().to_string_lossy().ends_with(".part"));
+    assert_eq!(leftovers.count(), 0);
+}
+
+#[test]
+fn records_of_another_machine_or_program_are_not_mixed() {
+    let folder = Folder::new();
+    let mut other = environment();
+    other.machine = "abacus".to_owned();
+    Records::new(other).save(folder.path()).expect("writable");
+    let refused = Records::resume(folder.path(), environment()).expect_err("another machine");
+    assert!(matches!(refused, RecordsError::Differs { .. }));
+    let text = refused.to_string();
+    assert!(text.contains("abacus") && text.contains("choose another folder") && text.lines().count() == 1, "{text}");
+    folder.write("records.json", "{ \"version\": 1");
+    let damaged = Records::resume(folder.path(), environment()).expect_err("cut off").to_string();
+    assert!(damaged.contains("records.json") && damaged.lines().count() == 1, "{damaged}");
+}
+
+#[test]
+fn charts_and_page_are_drawn_from_the_records_alone() {
+    let folder = Folder::new();
+    let mut records = run(folder.path(), &jobs(), u64::MAX).expect("nothing stops it");
+    let effort = Effort { rounds: 0, ..TINY };
+    let curves = stability::jobs(&Settings::exact(), &effort).expect("valid scenes");
+    records.rows.extend(run(Folder::new().path(), &curves, u64::MAX).expect("nothing stops it").rows);
+    records.save(folder.path()).expect("writable");
+
+    page::draw(&load(folder.path()), folder.path()).expect("writable");
+    let mut kinds = BTreeSet::new();
+    for file in fs::read_dir(folder.path()).expect("it exists").map(|file| file.expect("readable").path()) {
+        let name = file.file_name().expect("a file").to_string_lossy().into_owned();
+        match file.extension().and_then(|extension| extension.to_str()) {
+            Some("svg") => {
+                let text = fs::read_to_string(&file).expect("readable");
+                usvg::Tree::from_str(&text, &usvg::Options::default())
+                    .unwrap_or_else(|error| panic!("{name}: {error}"));
+                kinds.insert(name.split(['-', '.']).next().unwrap_or_default().to_owned());
+            }
+            Some("png") => {
+                let picture = image::open(&file).unwrap_or_else(|error| panic!("{name}: {error}")).to_rgb8();
+                let colours: BTreeSet<_> = picture.pixels().map(|pixel| pixel.0).collect();
+                assert!(picture.width() > 800 && colours.len() > 50, "{name} shows nothing");
+            }
+            _ => {}
+        }
+    }
+    let wanted = ["growth", "optimisations", "stability", "stages", "tradeoff", "walk"].map(str::to_owned);
+    assert_eq!(kinds, BTreeSet::from(wanted));
+
+    let html = fs::read_to_string(folder.path().join("index.html")).expect("written");
+    assert!(html.contains("a &amp; &lt;b&gt;") && !html.contains("<b>"), "names are escaped");
+    assert!(!html.contains("http://") && !html.contains("https://"), "it loads something");
+    assert!(html.contains("data:image/jpeg;base64,"), "it has no pictures");
+    let csv = fs::read_to_string(folder.path().join("records.csv")).expect("written");
+    assert_eq!(csv.lines().count(), 1 + records.rows.len());
+}
+
+#[test]
+fn certified_is_exact_in_every_curve_and_subsampling_loses_wires() {
+    let folder = Folder::new();
+    let jobs = stability::jobs(&Settings::exact(), &Effort { rounds: 0, ..TINY }).expect("valid scenes");
+    let records = run(folder.path(), &jobs, u64::MAX).expect("nothing stops it");
+    let wrong = |method: &str, scene: &str| -> Vec<f64> {
+        let rows = records.of(Part::Stability).filter(|row| row.key.method == method && row.key.scene == scene);
+        rows.filter_map(|row| row.error("wrong_share")).collect()
+    };
+    for scene in ["wires", "spheres", "scales"] {
+        assert!(wrong("exact", scene).len() > 8);
+        assert_eq!(wrong("exact", scene), wrong("full", scene), "{scene}");
+    }
+    assert!(wrong("exact", "wires").iter().all(|share| *share == 0.0));
+    assert!(wrong("hit 8", "wires").iter().any(|share| *share > 50.0));
+    assert!(wrong("thesis sphere cache", "spheres").iter().any(|share| *share > 50.0));
+}
+
+#[test]
+fn the_thesis_table_has_its_layout() {
+    let folder = Folder::new();
+    let view = thesis::views().expect("valid scenes").remove(0);
+    let jobs: Vec<Job> = thesis::jobs(&View { size: (64, 36), ..view }, &Settings::exact());
+    let records = run(folder.path(), &jobs, u64::MAX).expect("nothing stops it");
+    let table = thesis::table(&records).expect("there are rows");
+    assert_eq!(table.rows.len(), 1 + thesis::PUBLISHED.len());
+    assert!(table.rows.iter().all(|row| row.len() == table.head.len()));
+    assert_eq!(table.rows[1][1], "87 / 104 / 389 / 526");
+    let errors = &table.rows[0][table.head.len() - 2];
+    assert!(errors.starts_with("all: ") && errors.ends_with("/ 0"), "{errors}");
+    assert_eq!(table.rows[0].last().map(String::as_str), Some("none"));
+}
