@@ -48,7 +48,7 @@ pub fn lowered(chosen: &Settings, lowering: Lowering) -> Settings {
 /// that was chosen; that one too where it is less than what was chosen, which has more samples a pixel.
 pub fn presets_below(chosen: &Settings) -> Vec<&'static str> {
     let one_sample = Settings { supersample: Supersample::Off, ..chosen.clone() };
-    let first = match PRESETS.iter().position(|preset| with_preset(&one_sample, preset) == one_sample) {
+    let first = match PRESETS.iter().rposition(|preset| with_preset(&one_sample, preset) == one_sample) {
         Some(own) if one_sample == *chosen => own + 1,
         Some(own) => own,
         // Settings of the user's own making: they are no more than the best.
