@@ -10,7 +10,7 @@
 //! | [`scene`] | what the place looks like, and how it is read from disk |
 //! | [`render`] | one frame from scene, camera and settings; no window, no file |
 //! | [`picture`] | pictures on disk |
-//! | [`measure`] | how fast and how true: runs, records, metrics |
+//! | [`measure`] | how fast and how true: metrics, runs, records, benches, charts |
 //! | [`app`] | the window: input in, picture and panel out |
 //!
 //! Everything that draws goes through one waist, [`render::render_frame`]:

@@ -155,7 +155,7 @@ fn certified_is_exact_in_every_curve_and_subsampling_loses_wires() {
     }
     assert!(wrong("exact", "wires").iter().all(|share| *share == 0.0));
     assert!(wrong("hit 8", "wires").iter().any(|share| *share > 50.0));
-    assert!(wrong("thesis sphere cache", "spheres").iter().any(|share| *share > 50.0));
+    assert!(wrong("thesis cache", "spheres").iter().any(|share| *share > 50.0));
 }
 
 #[test]

@@ -14,6 +14,16 @@ pub struct Labels {
     written: Vec<Area>,
 }
 
+/// A place for a label.
+struct Spot {
+    area: Area,
+    /// Where its text starts from, in the middle of its height.
+    at: (f64, f64),
+    anchor: Anchor,
+    /// So far from its mark that a line has to join them.
+    far: bool,
+}
+
 impl Labels {
     /// Nothing is taken within `bounds`.
     pub fn within(bounds: Area) -> Self {
@@ -41,9 +51,22 @@ impl Labels {
     }
 
     /// Writes `text` beside a mark, farther away with a thin line where there is no room; leaves it out where there is none
-    /// at all.
-    pub fn place(&mut self, svg: &mut Svg, (x, y): (f64, f64), text: &str) {
+    /// at all. The line crosses another label only where nothing else is left.
+    pub fn place(&mut self, svg: &mut Svg, mark: (f64, f64), text: &str) {
         let width = text_width(text, FONT);
+        let spot = self.spot(mark, width, true).or_else(|| self.spot(mark, width, false));
+        if let Some(Spot { area, at, anchor, far }) = spot {
+            if far {
+                svg.line(mark, at, "leader");
+            }
+            svg.text(at.0, at.1 + 4.5, anchor, "", text);
+            self.taken.push(area);
+            self.written.push(area);
+        }
+    }
+
+    /// The first free place around a mark, beginning with the nearest.
+    fn spot(&self, (x, y): (f64, f64), width: f64, uncrossed: bool) -> Option<Spot> {
         for distance in [9.0, 20.0, 34.0, 50.0, 68.0, 88.0] {
             let slant = 0.75 * distance;
             let places = [
@@ -56,26 +79,23 @@ impl Labels {
                 (slant, slant + 3.0, Anchor::Start),
                 (-slant, slant + 3.0, Anchor::End),
             ];
+            let far = distance > 20.0;
             for (dx, dy, anchor) in places {
+                let at = (x + dx, y + dy);
                 let left = match anchor {
-                    Anchor::Start => x + dx,
-                    Anchor::Middle => x + dx - width / 2.0,
-                    Anchor::End => x + dx - width,
+                    Anchor::Start => at.0,
+                    Anchor::Middle => at.0 - width / 2.0,
+                    Anchor::End => at.0 - width,
                 };
-                let (top, center) = (y + dy - HEIGHT / 2.0, y + dy);
+                let top = at.1 - HEIGHT / 2.0;
                 let area = Area { left, top, right: left + width, bottom: top + HEIGHT };
-                let crosses = |label: &Area| distance > 20.0 && meets(label, (x, y), (x + dx, center));
+                let crosses = |label: &Area| far && uncrossed && meets(label, (x, y), at);
                 if self.is_free(area) && !self.written.iter().any(crosses) {
-                    if distance > 20.0 {
-                        svg.line((x, y), (x + dx, center), "leader");
-                    }
-                    svg.text(x + dx, center + 4.5, anchor, "", text);
-                    self.taken.push(area);
-                    self.written.push(area);
-                    return;
+                    return Some(Spot { area, at, anchor, far });
                 }
             }
         }
+        None
     }
 
     fn is_free(&self, area: Area) -> bool {

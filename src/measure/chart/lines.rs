@@ -6,7 +6,7 @@ use super::palette::{DASHES, class};
 use super::svg::{Anchor, Svg};
 
 /// Room right of an area for the lines' names.
-pub const ROOM_FOR_NAMES: f64 = 165.0;
+pub const ROOM_FOR_NAMES: f64 = 185.0;
 
 /// One method's line.
 #[derive(Clone, Debug)]

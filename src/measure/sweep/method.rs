@@ -26,7 +26,7 @@ const SWEEP: &[Entry] = &[
     ("exact", "min-weight 1/512", |s| s.min_weight = 1.0 / 512.0, false),
     ("exact", "min-weight 1/64", |s| s.min_weight = 1.0 / 64.0, false),
     ("exact", "min-weight 1/16", |s| s.min_weight = 1.0 / 16.0, false),
-    ("thesis cache", "thesis sphere cache", |s| s.sphere_cache = SphereCache::Thesis, true),
+    ("thesis cache", "thesis cache", |s| s.sphere_cache = SphereCache::Thesis, true),
     ("balanced", "balanced", |s| apply("balanced", s), true),
     ("balanced", "interpolated light", |s| s.fill = Fill::Color, false),
     ("hit", "hit 2", |s| subsample(s, Fill::Hit, 2), true),
@@ -52,7 +52,7 @@ const STABILITY: &[Entry] = &[
     ("color", "color 2", |s| subsample(s, Fill::Color, 2), false),
     ("color", "color 8", |s| subsample(s, Fill::Color, 8), true),
     ("fast", "fast", |s| apply("fast", s), true),
-    ("thesis cache", "thesis sphere cache", |s| s.sphere_cache = SphereCache::Thesis, true),
+    ("thesis cache", "thesis cache", |s| s.sphere_cache = SphereCache::Thesis, true),
 ];
 
 /// What is followed along a path.
