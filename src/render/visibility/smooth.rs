@@ -88,7 +88,7 @@ pub struct Smooth {
 pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mut Worker) {
     certified::find(simd, frame, pass, worker);
     let mut smooth = std::mem::take(&mut worker.smooth);
-    let start = Instant::now();
+    let (start, certificate) = (Instant::now(), worker.stats.stages_ms.certificate);
     if frame.keeps_normals {
         // Cells that get their light here are not shaded again, which is when normals are noted.
         shade::store_seen(simd, frame, worker);
@@ -102,7 +102,9 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &
         worker.lit_cells = smooth.fill(simd, frame, worker);
         count_cells(worker);
     }
-    worker.stats.stages_ms.shade += milliseconds_since(start);
+    // Without what was spent on beams: that has a place of its own.
+    let beams = worker.stats.stages_ms.certificate - certificate;
+    worker.stats.stages_ms.shade += milliseconds_since(start) - beams;
     worker.smooth = smooth;
     worker.shade_paths(simd, frame);
 }
