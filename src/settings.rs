@@ -384,13 +384,6 @@ pub const ROWS: &[Row] = &[
         supersample, ["off" => Supersample::Off, same; "adaptive" => Supersample::Adaptive, different; "4" => Supersample::Grid { side: 2 }, different;
                       "9" => Supersample::Grid { side: 3 }, different; "16" => Supersample::Grid { side: 4 }, different;
                       "25" => Supersample::Grid { side: 5 }, different]),
-    Row {
-        name: "render-scale",
-        help: "edge of the traced picture as a share of the whole, which it is enlarged to (at rest it is 1)",
-        kind: Kind::Number { min: 0.1, max: 1.0, integer: false, promise: Promise::Approximate },
-        get: |s| s.render_scale.to_string(),
-        set: |s, text| number(text, 0.1, 1.0).map(|v| s.render_scale = v as f32),
-    },
     switch_row!("shadows", "shadow rays", shadows, ON_OFF_DIFFERENT),
     switch_row!("reflections", "mirror rays", reflections, ON_OFF_DIFFERENT),
     switch_row!("refractions", "rays through transparent things", refractions, ON_OFF_DIFFERENT),
@@ -413,6 +406,13 @@ pub const ROWS: &[Row] = &[
     },
     choice_row!("tone-map", "curve between linear light and the 8-bit picture: none clamps, neutral is Khronos PBR Neutral",
         tone_map, ["none" => ToneMap::None, same; "neutral" => ToneMap::Neutral, different]),
+    Row {
+        name: "render-scale",
+        help: "edge of the traced picture as a share of the whole, which it is enlarged to (at rest it is 1)",
+        kind: Kind::Number { min: 0.1, max: 1.0, integer: false, promise: Promise::Approximate },
+        get: |s| s.render_scale.to_string(),
+        set: |s, text| number(text, 0.1, 1.0).map(|v| s.render_scale = v as f32),
+    },
     Row {
         name: "exposure",
         help: "stops of exposure before the tone curve",
