@@ -67,11 +67,17 @@ pub enum Supersample {
 }
 
 impl Supersample {
+    /// Rays along one side of a pixel that is refined, where neighbours differ or at rest.
+    pub const REFINED_SIDE: u32 = 4;
+
+    /// Rays through such a pixel.
+    pub const REFINED: u32 = Self::REFINED_SIDE * Self::REFINED_SIDE;
+
     /// Most rays through one pixel.
     pub fn rays(self) -> u32 {
         match self {
             Self::Off => 1,
-            Self::Adaptive => 16,
+            Self::Adaptive => Self::REFINED,
             Self::Grid { side } => side * side,
         }
     }
@@ -351,6 +357,19 @@ macro_rules! switch_row {
     };
 }
 
+/// A row that takes a number within a range.
+macro_rules! number_row {
+    ($name:literal, $help:literal, $field:ident, $min:literal, $max:literal, $promise:ident) => {
+        Row {
+            name: $name,
+            help: $help,
+            kind: Kind::Number { min: $min, max: $max, integer: false, promise: Promise::$promise },
+            get: |s| s.$field.to_string(),
+            set: |s, text| number(text, $min, $max).map(|v| s.$field = v as f32),
+        }
+    };
+}
+
 /// Every setting, in the order in which people meet them.
 pub const ROWS: &[Row] = &[
     choice_row!("visibility", "how visible surfaces are found: certified proves for blocks of pixels what they can see, full traces every pixel, subsample a grid whose matching cells are filled in",
@@ -359,13 +378,14 @@ pub const ROWS: &[Row] = &[
         stride, ["8" => 8, approximate; "2" => 2, approximate; "4" => 4, approximate; "16" => 16, approximate]),
     choice_row!("fill", "how a cell that sees one thing is filled: hit shades every pixel, color interpolates (if certified, light alone)",
         fill, ["hit" => Fill::Hit, approximate; "color" => Fill::Color, approximate]),
-    Row {
-        name: "match-threshold",
-        help: "corner colours farther apart than this split a cell of fill color; a number or a fraction such as 16/255",
-        kind: Kind::Number { min: 0.0, max: 1.0, integer: false, promise: Promise::Approximate },
-        get: |s| s.match_threshold.to_string(),
-        set: |s, text| number(text, 0.0, 1.0).map(|v| s.match_threshold = v as f32),
-    },
+    number_row!(
+        "match-threshold",
+        "corner colours farther apart than this split a cell of fill color; a number or a fraction such as 16/255",
+        match_threshold,
+        0.0,
+        1.0,
+        Approximate
+    ),
     switch_row!("shadow-cache", "test the last blocker of a light before anything else", shadow_cache, ON_OFF_SAME),
     switch_row!("bvh", "bounding volume hierarchy; off tests every primitive", bvh, ON_OFF_SAME),
     choice_row!("sphere-cache", "sphere terms computed once per common ray origin; thesis caches |C-O|^2 - r^2, which cancels far away",
@@ -397,29 +417,18 @@ pub const ROWS: &[Row] = &[
             Ok(())
         },
     },
-    Row {
-        name: "min-weight",
-        help: "secondary rays that weigh less are not traced",
-        kind: Kind::Number { min: 0.0, max: 1.0, integer: false, promise: Promise::Approximate },
-        get: |s| s.min_weight.to_string(),
-        set: |s, text| number(text, 0.0, 1.0).map(|v| s.min_weight = v as f32),
-    },
+    number_row!("min-weight", "secondary rays that weigh less are not traced", min_weight, 0.0, 1.0, Approximate),
     choice_row!("tone-map", "curve between linear light and the 8-bit picture: none clamps, neutral is Khronos PBR Neutral",
         tone_map, ["none" => ToneMap::None, same; "neutral" => ToneMap::Neutral, different]),
-    Row {
-        name: "render-scale",
-        help: "edge of the traced picture as a share of the whole, which it is enlarged to (at rest it is 1)",
-        kind: Kind::Number { min: 0.1, max: 1.0, integer: false, promise: Promise::Approximate },
-        get: |s| s.render_scale.to_string(),
-        set: |s, text| number(text, 0.1, 1.0).map(|v| s.render_scale = v as f32),
-    },
-    Row {
-        name: "exposure",
-        help: "stops of exposure before the tone curve",
-        kind: Kind::Number { min: -20.0, max: 20.0, integer: false, promise: Promise::Different },
-        get: |s| s.exposure.to_string(),
-        set: |s, text| number(text, -20.0, 20.0).map(|v| s.exposure = v as f32),
-    },
+    number_row!(
+        "render-scale",
+        "edge of the traced picture as a share of the whole, which it is enlarged to (at rest it is 1)",
+        render_scale,
+        0.1,
+        1.0,
+        Approximate
+    ),
+    number_row!("exposure", "stops of exposure before the tone curve", exposure, -20.0, 20.0, Different),
     switch_row!(
         "refine-at-rest",
         "when motion stops, the window gathers samples up to the picture of supersample 16, then rests; on by default in the window, without effect elsewhere",

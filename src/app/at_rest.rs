@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 pub const REST: Duration = Duration::from_millis(150);
 
 /// Samples a pixel that a view at rest comes to.
-pub const SAMPLES: u32 = 16;
+pub const SAMPLES: u32 = Supersample::REFINED;
 
 /// The refinement of the last finished frame.
 #[derive(Debug, Default)]

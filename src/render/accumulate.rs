@@ -6,9 +6,10 @@
 //! time does it lean to the side of the rows that are done. Only these four are kept apart, not all sixteen.
 
 use super::samples::Colors;
+use crate::settings::Supersample;
 
 /// Samples along one side of a pixel.
-pub const SIDE: u32 = 4;
+pub const SIDE: u32 = Supersample::REFINED_SIDE;
 
 /// The sample of each row that is traced ahead, by its number in row order: no two in one column.
 const AHEAD: [u32; SIDE as usize] = [1, 7, 8, 14];

@@ -190,8 +190,13 @@ pub fn render_frame(
 ) -> FrameStats {
     let start = Instant::now();
     // A film that gathers samples takes one a frame, however many the settings ask for.
-    let one_sample = Settings { supersample: Supersample::Off, render_scale: 1.0, ..settings.clone() };
-    let settings = if film.progress.is_some() { &one_sample } else { settings };
+    let one_sample;
+    let settings = if film.progress.is_some() {
+        one_sample = Settings { supersample: Supersample::Off, render_scale: 1.0, ..settings.clone() };
+        &one_sample
+    } else {
+        settings
+    };
     if settings.render_scale < 1.0 {
         return enlarge::render_scaled(scene, camera, settings, scratch, film);
     }

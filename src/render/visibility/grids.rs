@@ -7,13 +7,13 @@ use crate::render::frame::Frame;
 use crate::render::samples::{CELL, pixel_at};
 use crate::render::tile::milliseconds_since;
 use crate::render::trace;
-use crate::settings::Visibility;
+use crate::settings::{Supersample, Visibility};
 use fearless_simd::Simd;
 use std::ops::Range;
 use std::time::Instant;
 
 /// Samples along one side of a pixel, and in all.
-pub const GRID_SIDE: usize = 4;
+pub const GRID_SIDE: usize = Supersample::REFINED_SIDE as usize;
 pub const GRID: usize = GRID_SIDE * GRID_SIDE;
 
 /// Colours the samples of the grids of some pixels of the tile at `corner`, which are given in order by the samples of
