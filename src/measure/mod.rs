@@ -13,6 +13,7 @@ pub mod difference;
 pub mod metric;
 pub mod motion;
 pub mod page;
+pub mod pops;
 pub mod record;
 pub mod records;
 pub mod run;
