@@ -19,6 +19,7 @@ pub mod records;
 pub mod run;
 pub mod stability;
 pub mod statistics;
+pub mod summary;
 pub mod sweep;
 pub mod system;
 pub mod table;

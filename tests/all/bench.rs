@@ -20,7 +20,7 @@ const SCENE: &str = r#"{ "version": 1, "camera": { "position": [0, 1, 4], "look_
     "objects": [ { "type": "sphere", "center": [0, 0, 0], "radius": 1 },
                  { "type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0] } ] }"#;
 
-const TINY: Effort = Effort { name: "tiny", quick: true, rounds: 1, scene: Duration::from_secs(20) };
+const TINY: Effort = Effort { name: "tiny", quick: true, rounds: 1, cameras: 2, scene: Duration::from_secs(20) };
 
 /// Stops a bench at a step.
 struct StopAt(u64, CancelToken);
@@ -42,7 +42,7 @@ fn jobs() -> Vec<Job> {
     let scene = Arc::new(load_text("a & <b>.json", SCENE, &LoadOptions::default()).expect("a valid scene"));
     let camera = scene.cameras[0].camera;
     let (name, camera_name) = ("a & <b>".to_owned(), "default".to_owned());
-    of_scene(&View { name, scene, camera_name, camera, size: (128, 72) }, &Settings::exact(), None, &TINY)
+    of_scene(&View { name, scene, camera_name, camera, path: Vec::new(), size: (128, 72) }, &Settings::exact(), &TINY)
 }
 
 /// Runs `jobs` until step `stop`.
@@ -169,6 +169,6 @@ fn the_thesis_table_has_its_layout() {
     assert!(table.rows.iter().all(|row| row.len() == table.head.len()));
     assert_eq!(table.rows[1][1], "87 / 104 / 389 / 526");
     let errors = &table.rows[0][table.head.len() - 2];
-    assert!(errors.starts_with("all: ") && errors.ends_with("/ 0"), "{errors}");
+    assert!(errors.starts_with("every method: ") && errors.ends_with("/ 0"), "{errors}");
     assert_eq!(table.rows[0].last().map(String::as_str), Some("none"));
 }

@@ -31,6 +31,28 @@ pub fn by_share(reference: &EightBit, picture: &EightBit, counts: &[bool]) -> BT
     BTreeMap::from([(WRONG_SHARE.to_owned(), share)])
 }
 
+/// Errors of several pictures as one: of greatest errors the greatest, of roots and logarithms of a mean that of the mean,
+/// of all others the mean. What no picture has a value of has none.
+pub fn of_all(pictures: &[BTreeMap<String, Option<f64>>]) -> BTreeMap<String, Option<f64>> {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let of = |name: &str| -> Vec<f64> { pictures.iter().filter_map(|errors| errors.get(name).copied()?).collect() };
+    let squared = || mean(&of("rmse").iter().map(|rmse| rmse * rmse).collect::<Vec<_>>());
+    let all = |name: &String| {
+        let values = of(name);
+        let value = match name.as_str() {
+            "max_abs" | "p999_abs" => values.iter().copied().fold(0.0, f64::max),
+            "rmse" => squared().sqrt(),
+            "psnr" => -10.0 * libm::log10(squared()),
+            _ => mean(&values),
+        };
+        (name.clone(), Some(value).filter(|_| !values.is_empty()))
+    };
+    match pictures {
+        [alone] => alone.clone(),
+        _ => pictures.first().map(|errors| errors.keys().map(all).collect()).unwrap_or_default(),
+    }
+}
+
 /// The map of a picture's errors; `None` where it has none.
 pub fn error_map(reference: &EightBit, picture: &EightBit) -> Option<EightBit> {
     if reference == picture {
@@ -99,6 +121,21 @@ mod tests {
         let errors = by_metrics(&a, &a);
         assert_eq!((errors["max_abs"], errors["psnr"], errors["ssim"]), (Some(0.0), None, Some(1.0)));
         assert_eq!(error_map(&a, &a), None);
+    }
+
+    #[test]
+    fn errors_along_a_path_are_those_of_all_its_pixels() {
+        let (exact, wrong) = (picture(&[0, 0, 0, 0]), picture(&[51, 0, 0, 0]));
+        let errors = [by_metrics(&exact, &exact), by_metrics(&exact, &wrong)];
+        let all = of_all(&errors);
+        let rmse = 0.2 / 8.0_f64.sqrt();
+        let near = |name: &str, wanted: f64| assert!((all[name].expect("it has") - wanted).abs() < 1e-6, "{name}");
+        near("rmse", rmse);
+        near("psnr", -20.0 * rmse.log10());
+        near("max_abs", 0.2);
+        near("pixels_off", 0.5);
+        assert_eq!(of_all(&errors[..1]), errors[0]);
+        assert_eq!(of_all(&[errors[0].clone(), errors[0].clone()])["psnr"], None);
     }
 
     #[test]

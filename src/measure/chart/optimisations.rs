@@ -42,12 +42,14 @@ fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
     let size = (WIDTH, 164.0 + GROUP * bars.len() as f64);
     let title = format!("What each optimisation is worth: {}", view_title(view));
     let note = format!(
-        "{}x{}, median CPU time of a frame, for threads the time by the clock; all on: {} ms, all off: {} ms. Whiskers: what the \
-         spread of frames (25 to 75 %) leaves open.",
+        "Median CPU time of a frame, for threads the time by the clock; all on: {} ms at {}x{}, all off: {} ms at {}x{}. \
+         Whiskers: what the spread of frames (25 to 75 %) leaves open.",
+        time_text(all),
         all.key.width,
         all.key.height,
-        time_text(all),
-        time_text(none)
+        time_text(none),
+        none.key.width,
+        none.key.height,
     );
     let mut svg = Svg::on_paper(size, &title, &note);
     let area = Area { left: 190.0, top: 102.0, right: WIDTH - 90.0, bottom: size.1 - 56.0 };

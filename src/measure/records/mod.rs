@@ -7,7 +7,7 @@ mod environment;
 mod row;
 
 pub use csv::WRONG_SHARE;
-pub use environment::{Environment, fingerprint};
+pub use environment::Environment;
 pub use row::{FrameError, Key, Part, Row, Samples};
 
 use crate::picture::{PendingFile, PictureError};
@@ -107,7 +107,7 @@ impl Records {
         if let Some((what, before, now)) = records.environment.difference(&environment) {
             return Err(RecordsError::Differs { path: Self::file(folder), what, before, now });
         }
-        records.environment.scenes.extend(environment.scenes);
+        records.environment.views.extend(environment.views);
         Ok(records)
     }
 
