@@ -111,7 +111,7 @@ fn views(scenes: &[&PathBuf], asked: &ArgMatches, options: &Options) -> Result<V
             let (name, camera) = stage::camera(scene, &view)?;
             add(with_changes(name, &view), camera, Vec::new());
         }
-        for path in &paths {
+        for (path, path_name) in paths.iter().zip(names(&paths.iter().cloned().map(Some).collect::<Vec<_>>())) {
             options.path = Some(path.clone());
             let frames = Frames::of(&options)?;
             if let (Some(warning), false) = (&frames.warning, options.reading.quiet) {
@@ -120,7 +120,10 @@ fn views(scenes: &[&PathBuf], asked: &ArgMatches, options: &Options) -> Result<V
             let along: Vec<Camera> =
                 frames.range.clone().map(|n| frames.camera(n, &stage.camera)).collect::<Result<_, _>>()?;
             let first = *along.first().ok_or_else(|| Failure::Usage("--frames: no frame is left".to_owned()))?;
-            let name = format!("path {}", path.display());
+            let mut name = format!("path {path_name}");
+            if let Some(range) = &options.frames {
+                name += &format!(" frames {}..{}", range.start, range.end);
+            }
             add(with_changes(name, &options.view), first, along);
         }
     }

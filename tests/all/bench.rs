@@ -96,6 +96,10 @@ fn records_of_another_machine_or_program_are_not_mixed() {
     assert!(matches!(refused, RecordsError::Differs { .. }));
     let text = refused.to_string();
     assert!(text.contains("abacus") && text.contains("choose another folder") && text.lines().count() == 1, "{text}");
+    let foreign = Folder::new();
+    foreign.write("index.html", "a page of somebody's");
+    let refused = Records::resume(foreign.path(), environment()).expect_err("a page without records").to_string();
+    assert!(refused.contains("index.html") && refused.lines().count() == 1, "{refused}");
     folder.write("records.json", "{ \"version\": 1");
     let damaged = Records::resume(folder.path(), environment()).expect_err("cut off").to_string();
     assert!(damaged.contains("records.json") && damaged.lines().count() == 1, "{damaged}");

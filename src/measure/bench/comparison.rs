@@ -48,7 +48,7 @@ impl Bench<'_> {
                 }
                 self.look(job, method, place, &mut film, &truths)?;
             }
-            self.step(&job.view.name);
+            self.step(job.step(method), &job.view.name);
         }
         for round in 0..job.rounds as usize {
             for (method, &place) in job.methods.iter().zip(&places) {
@@ -60,15 +60,15 @@ impl Bench<'_> {
                     self.turn(job, method, place, round, &mut film)?;
                     self.save()?;
                 }
-                self.step(&job.view.name);
+                self.step(job.step(method), &job.view.name);
             }
         }
         places.iter().for_each(|&place| self.records.rows[place].complete = true);
         self.save()
     }
 
-    fn step(&mut self, name: &str) {
-        self.done += 1;
+    fn step(&mut self, cost: u64, name: &str) {
+        self.done += cost;
         self.listener.at(self.done, name);
     }
 

@@ -22,7 +22,7 @@ impl Bench<'_> {
                 (row.frames, row.complete) = (errors, true);
                 self.save()?;
             }
-            self.done += job.view.path.len() as u64;
+            self.done += job.step();
             self.listener.at(self.done, &job.view.name);
         }
         Ok(())

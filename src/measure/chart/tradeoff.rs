@@ -144,7 +144,7 @@ pub fn told(row: &Row) -> String {
         views => format!("\nerrors of {views} places along the path; the picture is of place {}, the worst", row.shown + 1),
     };
     format!(
-        "{}\n{flags}\nframe {} ms ({} to {}), CPU {} ms\nFLIP {}, RMSE {}, PSNR {} dB, greatest error {}\n{} pixels visibly wrong{shown}",
+        "{}\n{flags}\nframe {} ms ({} to {}), CPU {} ms\nFLIP {}, RMSE {}, PSNR {}, greatest error {}\n{} pixels visibly wrong{shown}",
         row.key.method,
         short(row.frame_ms.median),
         short(row.frame_ms.p5),
@@ -152,7 +152,7 @@ pub fn told(row: &Row) -> String {
         short(row.cpu_ms.min),
         score("flip"),
         score("rmse"),
-        score("psnr"),
+        row.error("psnr").map_or("without end".to_owned(), |psnr| format!("{} dB", short(psnr))),
         score("max_abs"),
         score("pixels_off"),
     )

@@ -4,7 +4,7 @@ use super::Method;
 use crate::measure::records::Part;
 use crate::render::{Film, Planes, Scratch, render_frame};
 use crate::scene::{Camera, Scene};
-use crate::settings::Settings;
+use crate::settings::{Settings, Supersample};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
 use std::slice;
@@ -130,12 +130,43 @@ pub enum Job {
     Walk(Walk),
 }
 
+impl View {
+    /// Roughly the milliseconds of one frame, at least 1: what progress is counted in.
+    fn frame_cost(&self, settings: &Settings) -> u64 {
+        /// Of one ray with all that it leads to, and the primitives that are tested without a tree in the same time.
+        const RAY_MS: f64 = 5e-5;
+        const TESTS: f64 = 40.0;
+        let rays = match settings.supersample {
+            Supersample::Off => 1,
+            Supersample::Adaptive => 4,
+            Supersample::Grid { side } => side * side,
+        };
+        let tests = if settings.bvh { 0.0 } else { self.scene.geometry.len() as f64 / TESTS };
+        let pixels = f64::from(self.size.0) * f64::from(self.size.1);
+        (pixels * f64::from(rays) * RAY_MS * (1.0 + tests)).max(1.0) as u64
+    }
+}
+
+impl Comparison {
+    /// What looking at a method's pictures, or one visit of it, counts in progress.
+    pub fn step(&self, method: &Method) -> u64 {
+        self.view.frame_cost(&method.settings).clamp(1, self.longest_frame.as_millis().max(1) as u64)
+    }
+}
+
+impl Walk {
+    /// What following a method counts in progress.
+    pub fn step(&self) -> u64 {
+        self.view.frame_cost(&self.reference) * self.view.path.len() as u64
+    }
+}
+
 impl Job {
-    /// How many steps of progress it is.
+    /// All of its steps of progress.
     pub fn steps(&self) -> u64 {
         match self {
-            Self::Compare(job) => job.methods.len() as u64 * u64::from(1 + job.rounds),
-            Self::Walk(job) => (job.methods.len() * job.view.path.len()) as u64,
+            Self::Compare(job) => job.methods.iter().map(|method| job.step(method) * u64::from(1 + job.rounds)).sum(),
+            Self::Walk(job) => job.step() * job.methods.len() as u64,
         }
     }
 
