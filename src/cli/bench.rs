@@ -103,7 +103,9 @@ fn views(scenes: &[&PathBuf], asked: &ArgMatches, options: &Options) -> Result<V
         let all = (0..scene.cameras.len()).map(|index| index.to_string());
         let wanted: Vec<Option<String>> = match &cameras[..] {
             [] if paths.is_empty() => vec![None],
-            [only] if only == "all" && scene.cameras.iter().all(|camera| camera.name != "all") => all.map(Some).collect(),
+            [only] if only == "all" && scene.cameras.iter().all(|camera| camera.name != "all") => {
+                all.map(Some).collect()
+            }
             named => named.iter().cloned().map(Some).collect(),
         };
         for camera in wanted {

@@ -142,8 +142,7 @@ impl Failure {
 fn failure(records: &Records, kind: &Difficulty, method: &str) -> Option<Failure> {
     let shares = |method: &str| -> Vec<(f64, f64)> {
         let rows = records.of(Part::Stability).filter(|row| row.key.scene == kind.name && row.key.method == method);
-        let mut shares: Vec<(f64, f64)> =
-            rows.filter_map(|row| row.key.at.zip(row.error(WRONG_SHARE))).collect();
+        let mut shares: Vec<(f64, f64)> = rows.filter_map(|row| row.key.at.zip(row.error(WRONG_SHARE))).collect();
         shares.sort_by(|a, b| a.0.total_cmp(&b.0));
         if kind.falls {
             shares.reverse();

@@ -28,7 +28,9 @@ fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
     );
     let mut svg = Svg::on_paper(size, &title, &note);
     let area = Area { left: 170.0, top: 96.0, right: WIDTH - 80.0, bottom: size.1 - 56.0 };
-    let x = Axis::linear(rows.iter().map(|row| parts(row).iter().map(|(_, ms)| ms).sum()), area.left, area.right);
+    // The sum stands behind its bar.
+    let room = |row| 1.08 * parts(row).iter().map(|(_, ms)| ms).sum::<f64>();
+    let x = Axis::linear(rows.iter().map(|row| room(row)), area.left, area.right);
     area.axis_below(&mut svg, &x, "time of a frame, summed over threads [ms]");
     let used: Vec<usize> = (0..=STAGES.len())
         .filter(|i| rows.iter().any(|row| parts(row).iter().any(|(stage, ms)| stage == i && *ms > 0.0)))

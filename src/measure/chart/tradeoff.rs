@@ -141,7 +141,9 @@ pub fn told(row: &Row) -> String {
     let score = |name: &str| row.error(name).map_or("-".to_owned(), short);
     let shown = match row.views {
         0 | 1 => String::new(),
-        views => format!("\nerrors of {views} places along the path; the picture is of place {}, the worst", row.shown + 1),
+        views => {
+            format!("\nerrors of {views} places along the path; the picture is of place {}, the worst", row.shown + 1)
+        }
     };
     format!(
         "{}\n{flags}\nframe {} ms ({} to {}), CPU {} ms\nFLIP {}, RMSE {}, PSNR {}, greatest error {}\n{} pixels visibly wrong{shown}",

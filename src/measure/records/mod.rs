@@ -200,7 +200,8 @@ mod tests {
     #[test]
     fn file_names_are_plain_and_differ_where_names_do() {
         assert_eq!(file_name(&["tradeoff", "gallery (built in)"]), "tradeoff-gallery__built_in_");
-        let names = ["\u{421}\u{446}\u{435}\u{43d}\u{430}", "\u{421}\u{442}\u{435}\u{43d}\u{430}", "a/b", "a:b", "../x"];
+        let names =
+            ["\u{421}\u{446}\u{435}\u{43d}\u{430}", "\u{421}\u{442}\u{435}\u{43d}\u{430}", "a/b", "a:b", "../x"];
         let names = names.map(|name| file_name(&[name]));
         for (i, name) in names.iter().enumerate() {
             assert!(name.chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c)), "{name}");

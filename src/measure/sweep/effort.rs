@@ -19,7 +19,8 @@ pub struct Effort {
 
 impl Effort {
     /// Under three minutes a scene on two cores.
-    pub const DEFAULT: Self = Self { name: "default", quick: false, rounds: 6, cameras: 6, scene: Duration::from_secs(110) };
+    pub const DEFAULT: Self =
+        Self { name: "default", quick: false, rounds: 6, cameras: 6, scene: Duration::from_secs(110) };
     /// Under thirty seconds a scene.
     pub const QUICK: Self = Self { name: "quick", quick: true, rounds: 3, cameras: 3, scene: Duration::from_secs(18) };
 

@@ -47,21 +47,14 @@ pub fn of_scene(view: &View, base: &Settings, effort: &Effort) -> Vec<Job> {
         comparison(Part::Settings, size, None, Judge::Metrics, sweep_methods(base, effort.quick), 58),
         comparison(
             Part::Optimisations,
-            bare_size(view, half, effort.share(OPTIMISATIONS_SHARE) / SLOWEST),
+            bare_size(view, half, effort.share(OPTIMISATIONS_SHARE) / (2 * SLOWEST)),
             None,
             Judge::Time,
             optimisations_alone(base),
             OPTIMISATIONS_SHARE,
         ),
         // What is worth little in a tiny picture, such as beams, must not be judged by one.
-        comparison(
-            Part::Optimisations,
-            half,
-            None,
-            Judge::Time,
-            optimisations_taken_away(base),
-            OPTIMISATIONS_SHARE,
-        ),
+        comparison(Part::Optimisations, half, None, Judge::Time, optimisations_taken_away(base), OPTIMISATIONS_SHARE),
     ];
     let mut small = View { size: (half.0.max(1), half.1.max(1)), ..view.clone() };
     if small.path.is_empty() {
