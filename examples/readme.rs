@@ -16,12 +16,17 @@ use raywalk::settings::Settings;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// What is measured is kept here until the program changes.
 const FOLDER: &str = "target/readme";
 /// The beginning of the charts that are shown, and the files they become.
 const CHARTS: [(&str, &str); 3] =
     [("tradeoff-", "tradeoff"), ("stability-wires", "stability-wires"), ("stability-spheres", "stability-spheres")];
+
+/// More patient than a sweep, for figures that are looked at more often.
+const EFFORT: Effort =
+    Effort { name: "for README.md", rounds: 12, scene: Duration::from_secs(600), ..Effort::DEFAULT };
 
 struct Quiet;
 
@@ -36,11 +41,11 @@ fn main() -> anyhow::Result<()> {
     let view = View { name, scene, camera_name, camera, path: Vec::new(), size: (1280, 720) };
     let base = Settings::exact();
     let of_settings = |job: &Job| matches!(job, Job::Compare(job) if job.part == Part::Settings);
-    let mut jobs: Vec<Job> = of_scene(&view, &base, &Effort::DEFAULT).into_iter().filter(of_settings).collect();
-    jobs.extend(stability::jobs(&base, &Effort::DEFAULT)?);
+    let mut jobs: Vec<Job> = of_scene(&view, &base, &EFFORT).into_iter().filter(of_settings).collect();
+    jobs.extend(stability::jobs(&base, &EFFORT)?);
 
     let folder = Path::new(FOLDER);
-    let records = Records::resume(folder, Environment::here(&base, Effort::DEFAULT.name))?;
+    let records = Records::resume(folder, Environment::here(&base, EFFORT.name))?;
     let mut bench = Bench::new(folder.to_owned(), records, CancelToken::default(), &Quiet);
     bench.run(&jobs)?;
 
