@@ -25,8 +25,7 @@ const CHARTS: [(&str, &str); 3] =
     [("tradeoff-", "tradeoff"), ("stability-wires", "stability-wires"), ("stability-spheres", "stability-spheres")];
 
 /// More patient than a sweep, for figures that are looked at more often.
-const EFFORT: Effort =
-    Effort { name: "for README.md", rounds: 12, scene: Duration::from_secs(600), ..Effort::DEFAULT };
+const EFFORT: Effort = Effort { name: "for README.md", rounds: 12, scene: Duration::from_secs(600), ..Effort::DEFAULT };
 
 struct Quiet;
 
