@@ -85,7 +85,10 @@ fn bench() -> Command {
         )
         .arg(switch("thesis", "The thesis's table instead: its methods at 1, 4, 16 and 25 rays a pixel, 640x360"))
         .arg(switch("redraw", "Measure nothing; draw what the folder's records hold"));
+    let again = |help: &'static str| move |arg: Arg| arg.action(ArgAction::Append).help(help);
     with_options(command)
+        .mut_arg("camera", again("A camera of the scene, or all of them; may be given again [default: the first]"))
+        .mut_arg("path", again("Move the camera along a path; may be given again"))
 }
 
 fn info() -> Command {

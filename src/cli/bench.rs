@@ -2,14 +2,14 @@
 
 use super::frames::Frames;
 use super::interrupt::Interrupt;
-use super::options::Options;
+use super::options::{self, Options};
 use super::output;
 use super::progress::Progress;
-use super::stage::Stage;
+use super::stage::{self, Stage};
 use super::{Failure, stdout};
 use clap::ArgMatches;
 use raywalk::measure::bench::{Bench, Listener};
-use raywalk::measure::records::{Environment, Records, fingerprint};
+use raywalk::measure::records::{Environment, Records};
 use raywalk::measure::sweep::{Effort, Job, View, by_primitives, of_scene};
 use raywalk::measure::{page, stability, thesis};
 use raywalk::scene::Camera;
@@ -35,12 +35,20 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     let effort = if asked.get_flag("quick") { Effort::QUICK } else { Effort::DEFAULT };
     let mut environment = Environment::here(&options.settings, effort.name);
     let scenes: Vec<&PathBuf> = asked.get_many("scenes").into_iter().flatten().collect();
+    let views = match () {
+        () if asked.get_flag("stability") => Vec::new(),
+        () if asked.get_flag("thesis") && scenes.is_empty() => thesis::views()?,
+        () => views(&scenes, asked, &options)?,
+    };
+    for view in &views {
+        environment.views.insert(format!("{}, {}", view.name, view.camera_name), view.fingerprint(&options.settings));
+    }
     let jobs = if asked.get_flag("stability") {
         stability::jobs(&options.settings, &effort)?
     } else if asked.get_flag("thesis") {
-        thesis_jobs(&scenes, &options, &mut environment)?
+        thesis_jobs(views, &options)?
     } else {
-        sweep_jobs(&scenes, &options, &effort, &mut environment)?
+        sweep_jobs(&views, &options, &effort)?
     };
 
     interrupt.careful();
@@ -62,63 +70,64 @@ impl Listener for Teller<'_> {
     }
 }
 
-/// The jobs of all scenes, and what needs no scene.
-fn sweep_jobs(
-    scenes: &[&PathBuf],
-    options: &Options,
-    effort: &Effort,
-    environment: &mut Environment,
-) -> Result<Vec<Job>, Failure> {
-    let mut jobs = Vec::new();
-    for (view, path) in views(scenes, options, environment)? {
-        jobs.extend(of_scene(&view, &options.settings, path, effort));
-    }
+/// The jobs of all views, and what needs no scene.
+fn sweep_jobs(views: &[View], options: &Options, effort: &Effort) -> Result<Vec<Job>, Failure> {
+    let mut jobs: Vec<Job> = views.iter().flat_map(|view| of_scene(view, &options.settings, effort)).collect();
     jobs.extend(by_primitives(&options.settings, effort)?);
     Ok(jobs)
 }
 
 /// The jobs of the thesis's table, on its own scenes if none are named.
-fn thesis_jobs(scenes: &[&PathBuf], options: &Options, environment: &mut Environment) -> Result<Vec<Job>, Failure> {
-    let views = if scenes.is_empty() {
-        thesis::views()?
-    } else {
-        views(scenes, options, environment)?.into_iter().map(|(view, _)| view).collect()
-    };
+fn thesis_jobs(views: Vec<View>, options: &Options) -> Result<Vec<Job>, Failure> {
     let size = options.view.size.map_or(thesis::SIZE, |size| (size.width, size.height));
     Ok(views.into_iter().flat_map(|view| thesis::jobs(&View { size, ..view }, &options.settings)).collect())
 }
 
-/// What is looked at, and the cameras of a path.
-type Subject = (View, Option<Vec<Camera>>);
-
-/// What is looked at in each scene, with the cameras of a path if one is given; notes each scene's fingerprint.
-fn views(scenes: &[&PathBuf], options: &Options, environment: &mut Environment) -> Result<Vec<Subject>, Failure> {
+/// What is looked at: in each scene, from every camera and along every path that were named.
+fn views(scenes: &[&PathBuf], asked: &ArgMatches, options: &Options) -> Result<Vec<View>, Failure> {
     let files = if scenes.is_empty() { vec![None] } else { scenes.iter().map(|file| Some((*file).clone())).collect() };
-    let names = names(&files);
-    let frames = Frames::of(options)?;
-    if let (Some(warning), false) = (&frames.warning, options.reading.quiet) {
-        stdout::note(&format!("warning: {warning}"));
-    }
+    let cameras: Vec<String> = asked.get_many("camera").into_iter().flatten().cloned().collect();
+    let paths: Vec<PathBuf> = asked.get_many("path").into_iter().flatten().cloned().collect();
     let mut views = Vec::new();
-    for (file, name) in files.into_iter().zip(names) {
-        if let Some(print) = file.as_deref().and_then(fingerprint) {
-            environment.scenes.insert(name.clone(), print);
-        }
+    for (file, name) in files.iter().zip(names(&files)) {
         let mut options = options.clone();
-        options.reading.scene = file;
+        options.reading.scene = file.clone();
+        // Paths move the first camera.
+        options.view.camera = None;
         let stage = Stage::set(&options)?;
-        let path = match &options.path {
-            Some(_) => Some(frames.range.clone().map(|n| frames.camera(n, &stage.camera)).collect::<Result<_, _>>()?),
-            None => None,
+        let scene = &stage.loaded.scene;
+        let mut add = |camera_name, camera, path| {
+            let (name, size) = (name.clone(), (stage.size.width, stage.size.height));
+            views.push(View { name, scene: Arc::clone(scene), camera_name, camera, path, size });
         };
-        let view = View {
-            name,
-            scene: Arc::clone(&stage.loaded.scene),
-            camera_name: camera_name(&options, &stage),
-            camera: stage.camera,
-            size: (stage.size.width, stage.size.height),
+        let all = (0..scene.cameras.len()).map(|index| index.to_string());
+        let wanted: Vec<Option<String>> = match &cameras[..] {
+            [] if paths.is_empty() => vec![None],
+            [only] if only == "all" && scene.cameras.iter().all(|camera| camera.name != "all") => {
+                all.map(Some).collect()
+            }
+            named => named.iter().cloned().map(Some).collect(),
         };
-        views.push((view, path));
+        for camera in wanted {
+            let view = options::View { camera, ..options.view.clone() };
+            let (name, camera) = stage::camera(scene, &view)?;
+            add(with_changes(name, &view), camera, Vec::new());
+        }
+        for (path, path_name) in paths.iter().zip(names(&paths.iter().cloned().map(Some).collect::<Vec<_>>())) {
+            options.path = Some(path.clone());
+            let frames = Frames::of(&options)?;
+            if let (Some(warning), false) = (&frames.warning, options.reading.quiet) {
+                stdout::note(&format!("warning: {warning}"));
+            }
+            let along: Vec<Camera> =
+                frames.range.clone().map(|n| frames.camera(n, &stage.camera)).collect::<Result<_, _>>()?;
+            let first = *along.first().ok_or_else(|| Failure::Usage("--frames: no frame is left".to_owned()))?;
+            let mut name = format!("path {path_name}");
+            if let Some(range) = &options.frames {
+                name += &format!(" frames {}..{}", range.start, range.end);
+            }
+            add(with_changes(name, &options.view), first, along);
+        }
     }
     Ok(views)
 }
@@ -138,11 +147,8 @@ fn names(files: &[Option<PathBuf>]) -> Vec<String> {
     files.iter().map(name).collect()
 }
 
-/// What the camera is called in records: its name, and what the command line makes of it.
-fn camera_name(options: &Options, stage: &Stage) -> String {
-    let view = &options.view;
-    let first = stage.loaded.scene.cameras.first().map(|camera| camera.name.clone());
-    let mut name = view.camera.clone().or(first).unwrap_or_default();
+/// What a camera is called in records: its name, and what the command line makes of it.
+fn with_changes(mut name: String, view: &options::View) -> String {
     for (flag, vector) in [("eye", view.eye), ("look-at", view.look_at), ("up", view.up)] {
         if let Some(vector) = vector {
             name += &format!(" {flag} {},{},{}", vector.x, vector.y, vector.z);
@@ -150,9 +156,6 @@ fn camera_name(options: &Options, stage: &Stage) -> String {
     }
     if let Some(fov) = view.fov {
         name += &format!(" fov {fov}");
-    }
-    if let Some(path) = &options.path {
-        name += &format!(" path {}", path.display());
     }
     name
 }

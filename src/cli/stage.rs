@@ -50,7 +50,7 @@ impl Stage {
         if !options.reading.quiet {
             scene.warnings.iter().for_each(|warning| stdout::note(&format!("warning: {warning}")));
         }
-        let camera = camera(scene, &options.view)?;
+        let (_, camera) = camera(scene, &options.view)?;
         let size = match options.view.size {
             Some(size) => size,
             None => size_of(scene, options)?,
@@ -79,8 +79,8 @@ fn size_of(scene: &Scene, options: &Options) -> Result<Size, Failure> {
     Ok(size)
 }
 
-/// The camera named, with what the command line changes.
-fn camera(scene: &Scene, view: &View) -> Result<Camera, Failure> {
+/// The camera named, with what the command line changes, and its name.
+pub fn camera(scene: &Scene, view: &View) -> Result<(String, Camera), Failure> {
     let named = match &view.camera {
         None => scene.cameras.first(),
         Some(wanted) => scene
@@ -103,7 +103,7 @@ fn camera(scene: &Scene, view: &View) -> Result<Camera, Failure> {
         ..base
     };
     if camera.is_valid() {
-        return Ok(camera);
+        return Ok((named.name.clone(), camera));
     }
     let Camera { eye, look_at, up, .. } = camera;
     Err(Failure::Usage(format!(

@@ -3,10 +3,8 @@
 //! Of frames `I` and references `R` for the same moments the error is `E = I - R`. What the reference changes by itself
 //! cancels: (I' - I) - (R' - R) = E' - E. So only errors are kept, in steps of an 8-bit sRGB channel (1/255 of its range).
 
+use super::pops::{Pops, Seen, is_visibly_wrong};
 use serde::Serialize;
-
-/// Errors beyond so many steps are seen: as in the metric `pixels_off`.
-const SEEN: u8 = 2;
 
 /// How the errors of a run changed from each frame to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -42,6 +40,7 @@ pub struct MotionMeter {
     squares: u64,
     pixels_off: u64,
     greatest: u8,
+    followed: Pops,
     /// Sums over all changes of frame.
     changes: u64,
     pops: u64,
@@ -54,28 +53,21 @@ impl MotionMeter {
         assert_eq!(picture.len(), reference.len(), "a frame and its reference have one size");
         let first = self.frames == 0;
         self.errors.resize(picture.len() / 4 * 3, 0);
-        let mut pops = 0;
-        let pixels = picture.as_chunks::<4>().0.iter().zip(reference.as_chunks::<4>().0);
-        for ((picture, reference), errors) in pixels.zip(self.errors.as_chunks_mut::<3>().0) {
-            let (mut before, mut now) = (0, 0);
+        let pixels = || picture.as_chunks::<4>().0.iter().zip(reference.as_chunks::<4>().0);
+        for ((picture, reference), errors) in pixels().zip(self.errors.as_chunks_mut::<3>().0) {
             for ((&value, &wanted), error) in picture.iter().zip(reference).zip(errors) {
                 let last = std::mem::replace(error, i16::from(value) - i16::from(wanted));
-                before = last.unsigned_abs().max(before);
-                now = error.unsigned_abs().max(now);
+                self.greatest = self.greatest.max(value.abs_diff(wanted));
                 self.squares += u64::from(error.unsigned_abs()).pow(2);
                 if !first {
                     self.changes += u64::from((*error - last).unsigned_abs());
                 }
             }
-            self.greatest = self.greatest.max(now as u8);
-            let seen = now > u16::from(SEEN);
-            self.pixels_off += u64::from(seen);
-            pops += u64::from(seen != (before > u16::from(SEEN)));
         }
-        if !first {
-            self.pops += pops;
-            self.pops_max = self.pops_max.max(pops);
-        }
+        let Seen { pixels_off, pops } = self.followed.add(pixels().map(|(a, b)| is_visibly_wrong(a, b)));
+        self.pixels_off += pixels_off;
+        self.pops += pops;
+        self.pops_max = self.pops_max.max(pops);
         self.frames += 1;
     }
 

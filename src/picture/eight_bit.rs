@@ -3,11 +3,14 @@
 use super::PictureError;
 use super::format::{Sink, WriteOptions};
 use crate::render::Film;
-use image::codecs::{bmp::BmpEncoder, jpeg::JpegEncoder, png::PngEncoder};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::codecs::{bmp::BmpEncoder, jpeg::JpegEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
 /// JPEG quality: no visible loss on rendered edges, a third of the PNG's size.
 const JPEG_QUALITY: u8 = 95;
+/// The same where few bytes count: half of that again.
+const COMPACT_QUALITY: u8 = 85;
 
 /// An 8-bit sRGB picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,6 +28,17 @@ impl EightBit {
     pub fn of_film(film: &Film) -> Self {
         let rgb = film.rgba().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
         Self { width: film.width(), height: film.height(), rgb }
+    }
+
+    /// The picture in few bytes, with their media type: a JPEG that loses a little, or a PNG where that is smaller.
+    ///
+    /// # Errors
+    /// [`PictureError::Encode`] for sides that a JPEG cannot have, above 65535.
+    pub fn compact(&self) -> Result<(&'static str, Vec<u8>), PictureError> {
+        let (mut jpeg, mut png) = (Vec::new(), Vec::new());
+        self.encode_with(JpegEncoder::new_with_quality(&mut jpeg, COMPACT_QUALITY))?;
+        self.encode_with(PngEncoder::new_with_quality(&mut png, CompressionType::Best, FilterType::Adaptive))?;
+        Ok(if jpeg.len() < png.len() { ("image/jpeg", jpeg) } else { ("image/png", png) })
     }
 
     fn encode_with(&self, encoder: impl ImageEncoder) -> Result<(), PictureError> {
@@ -68,6 +82,16 @@ mod tests {
             assert_eq!((back.width(), back.height()), (16, 8));
             assert_eq!(back.into_raw(), gradient().rgb);
         }
+    }
+
+    #[test]
+    fn few_bytes_are_a_png_of_plain_pictures_and_a_jpeg_of_noise() {
+        let plain = EightBit { width: 32, height: 32, rgb: vec![70; 3 * 32 * 32] };
+        assert_eq!(plain.compact().expect("small sides").0, "image/png");
+        let noise = (0..3 * 32 * 32_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+        let (kind, bytes) = EightBit { width: 32, height: 32, rgb: noise }.compact().expect("small sides");
+        assert_eq!(kind, "image/jpeg");
+        assert!(image::load_from_memory_with_format(&bytes, image::ImageFormat::Jpeg).is_ok());
     }
 
     #[test]

@@ -3,10 +3,11 @@
 use super::temporary::Folder;
 use raywalk::measure::bench::{Bench, BenchError, Listener};
 use raywalk::measure::records::{Environment, Part, Records, RecordsError};
+use raywalk::measure::summary::Summary;
 use raywalk::measure::sweep::{Effort, Job, View, of_scene};
 use raywalk::measure::{page, stability, thesis};
 use raywalk::render::CancelToken;
-use raywalk::scene::{LoadOptions, load_text};
+use raywalk::scene::{Camera, LoadOptions, load_text};
 use raywalk::settings::Settings;
 use resvg::usvg;
 use std::collections::BTreeSet;
@@ -20,7 +21,7 @@ const SCENE: &str = r#"{ "version": 1, "camera": { "position": [0, 1, 4], "look_
     "objects": [ { "type": "sphere", "center": [0, 0, 0], "radius": 1 },
                  { "type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0] } ] }"#;
 
-const TINY: Effort = Effort { name: "tiny", quick: true, rounds: 1, scene: Duration::from_secs(20) };
+const TINY: Effort = Effort { name: "tiny", quick: true, rounds: 1, cameras: 2, scene: Duration::from_secs(20) };
 
 /// Stops a bench at a step.
 struct StopAt(u64, CancelToken);
@@ -37,12 +38,16 @@ fn environment() -> Environment {
     Environment::here(&Settings::exact(), TINY.name)
 }
 
-/// A scene's jobs at 64x36.
-fn jobs() -> Vec<Job> {
+/// A scene, looked at in pictures of 64x36.
+fn view() -> View {
     let scene = Arc::new(load_text("a & <b>.json", SCENE, &LoadOptions::default()).expect("a valid scene"));
     let camera = scene.cameras[0].camera;
     let (name, camera_name) = ("a & <b>".to_owned(), "default".to_owned());
-    of_scene(&View { name, scene, camera_name, camera, size: (128, 72) }, &Settings::exact(), None, &TINY)
+    View { name, scene, camera_name, camera, path: Vec::new(), size: (128, 72) }
+}
+
+fn jobs() -> Vec<Job> {
+    of_scene(&view(), &Settings::exact(), &TINY)
 }
 
 /// Runs `jobs` until step `stop`.
@@ -96,9 +101,45 @@ fn records_of_another_machine_or_program_are_not_mixed() {
     assert!(matches!(refused, RecordsError::Differs { .. }));
     let text = refused.to_string();
     assert!(text.contains("abacus") && text.contains("choose another folder") && text.lines().count() == 1, "{text}");
+    let foreign = Folder::new();
+    foreign.write("index.html", "a page of somebody's");
+    let refused = Records::resume(foreign.path(), environment()).expect_err("a page without records").to_string();
+    assert!(refused.contains("index.html") && refused.lines().count() == 1, "{refused}");
     folder.write("records.json", "{ \"version\": 1");
     let damaged = Records::resume(folder.path(), environment()).expect_err("cut off").to_string();
     assert!(damaged.contains("records.json") && damaged.lines().count() == 1, "{damaged}");
+}
+
+#[test]
+fn records_of_another_picture_are_not_mixed() {
+    let folder = Folder::new();
+    let print = |view: &View| view.fingerprint(&Settings::exact());
+    let mut before = environment();
+    before.views.insert("a room, default".to_owned(), print(&view()));
+    Records::new(before.clone()).save(folder.path()).expect("writable");
+    assert!(Records::resume(folder.path(), before).is_ok());
+    let moved = View { camera: Camera { fov: 30.0, ..view().camera }, ..view() };
+    let mut now = environment();
+    now.views.insert("a room, default".to_owned(), print(&moved));
+    let refused = Records::resume(folder.path(), now).expect_err("another view").to_string();
+    assert!(refused.contains("version of a room, default"), "{refused}");
+}
+
+#[test]
+fn a_path_is_looked_at_from_several_places_and_walked() {
+    let folder = Folder::new();
+    let start = view().camera;
+    let along = |step: u8| Camera { eye: start.eye + 0.2 * f32::from(step), ..start };
+    let path: Vec<Camera> = (0..5).map(along).collect();
+    let walked = View { path: path.clone(), camera_name: "path".to_owned(), ..view() };
+    let records =
+        run(folder.path(), &of_scene(&walked, &Settings::exact(), &TINY), u64::MAX).expect("nothing stops it");
+    let rows = || records.of(Part::Settings);
+    assert!(rows().count() > 5 && rows().all(|row| row.views == TINY.cameras as u32 && row.shown < row.views));
+    assert!(rows().all(|row| row.key.method != "exact" || row.is_exact()));
+    assert!(rows().any(|row| row.error("flip") > Some(0.0) && row.map.is_some()));
+    assert!(records.of(Part::Walk).all(|row| (2..=path.len()).contains(&row.frames.len())));
+    assert!(records.of(Part::Pixels).all(|row| row.views == 1));
 }
 
 #[test]
@@ -109,6 +150,14 @@ fn charts_and_page_are_drawn_from_the_records_alone() {
     let curves = stability::jobs(&Settings::exact(), &effort).expect("valid scenes");
     records.rows.extend(run(Folder::new().path(), &curves, u64::MAX).expect("nothing stops it").rows);
     records.save(folder.path()).expect("writable");
+
+    let summary = Summary::of(&load(folder.path())).expect("full was swept");
+    let fails = |method: &str, kind: &str| {
+        let method = summary.methods.iter().find(|summed| summed.name == method).expect("in both");
+        method.failures.iter().any(|failure| failure.difficulty == kind)
+    };
+    assert!(fails("hit 8", "wires") && fails("thesis cache", "spheres") && !fails("exact", "wires"));
+    assert!(summary.table().rows.iter().all(|row| row.len() == summary.table().head.len()));
 
     page::draw(&load(folder.path()), folder.path()).expect("writable");
     let mut kinds = BTreeSet::new();
@@ -169,6 +218,6 @@ fn the_thesis_table_has_its_layout() {
     assert!(table.rows.iter().all(|row| row.len() == table.head.len()));
     assert_eq!(table.rows[1][1], "87 / 104 / 389 / 526");
     let errors = &table.rows[0][table.head.len() - 2];
-    assert!(errors.starts_with("all: ") && errors.ends_with("/ 0"), "{errors}");
+    assert!(errors.starts_with("every method: ") && errors.ends_with("/ 0"), "{errors}");
     assert_eq!(table.rows[0].last().map(String::as_str), Some("none"));
 }

@@ -2,6 +2,7 @@
 
 use super::temporary::Folder;
 use raywalk::app::input::HELP;
+use raywalk::measure::summary::Summary;
 use raywalk::render::{Film, Planes, Scratch, render_frame};
 use raywalk::scene::LoadOptions;
 use raywalk::settings::{Choice, Kind, PRESETS, Preset, ROWS, Row, Settings};
@@ -74,6 +75,20 @@ fn its_tables_are_the_programs_own_lists() {
     let missing: Vec<String> =
         settings.chain(presets).chain(keys).filter(|wanted| !readme.lines().any(|line| line == wanted)).collect();
     assert!(missing.is_empty(), "README.md lacks these lines:\n{}", missing.join("\n"));
+}
+
+#[test]
+fn what_methods_gain_and_lose_is_what_was_measured() {
+    let measured = fs::read_to_string(root().join("scenes/methods.json")).unwrap();
+    let summary: Summary = serde_json::from_str(&measured).unwrap();
+    let readme = readme();
+    let (begin, end) = Summary::MARKS;
+    let (_, rest) = readme.split_once(begin).expect("the beginning of the table");
+    let (table, _) = rest.split_once(end).expect("its end");
+    assert_eq!(table, format!("\n{}", summary.table().markdown()));
+    // What is promised to be the same picture was measured to be it.
+    let exact = summary.methods.iter().find(|method| method.name == "exact").expect("measured");
+    assert!(exact.pixels_off == 0.0 && exact.max_abs == 0.0 && exact.failures.is_empty(), "{exact:?}");
 }
 
 /// Everything in `text` that looks like a long flag.

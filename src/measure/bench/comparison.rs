@@ -7,9 +7,10 @@ use super::{Bench, BenchError, film, judge, new_row};
 use crate::measure::Run;
 use crate::measure::records::{Key, Row, file_name};
 use crate::measure::run::timed_frame;
-use crate::measure::sweep::{Comparison, Judge, Method, View};
+use crate::measure::sweep::{Comparison, Judge, Method};
 use crate::picture::{EightBit, Format, PendingFile};
 use crate::render::{Film, Planes};
+use crate::scene::Camera;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -39,15 +40,15 @@ impl Bench<'_> {
             return Ok(());
         }
         let mut film = film(job.view.size);
-        let mut truth = None;
+        let mut truths = Vec::new();
         for (method, &place) in job.methods.iter().zip(&places) {
             if !self.is_looked_at(place, job) {
-                if truth.is_none() && job.judge != Judge::Time {
-                    truth = Some(self.truth(job)?);
+                if truths.is_empty() && job.judge != Judge::Time {
+                    truths = self.truths(job)?;
                 }
-                self.look(job, method, place, &mut film, truth.as_ref())?;
+                self.look(job, method, place, &mut film, &truths)?;
             }
-            self.step(&job.view.name);
+            self.step(job.step(method), &job.view.name);
         }
         for round in 0..job.rounds as usize {
             for (method, &place) in job.methods.iter().zip(&places) {
@@ -56,18 +57,18 @@ impl Bench<'_> {
                     row.cut_off_ms.is_none() && row.frame_ms.len() <= round * FRAMES_A_TURN && !row.complete;
                 // Everything is timed at least once.
                 if is_behind && (row.frame_ms.is_empty() || start.elapsed() < job.budget) {
-                    self.turn(job, method, place, &mut film)?;
+                    self.turn(job, method, place, round, &mut film)?;
                     self.save()?;
                 }
-                self.step(&job.view.name);
+                self.step(job.step(method), &job.view.name);
             }
         }
         places.iter().for_each(|&place| self.records.rows[place].complete = true);
         self.save()
     }
 
-    fn step(&mut self, name: &str) {
-        self.done += 1;
+    fn step(&mut self, cost: u64, name: &str) {
+        self.done += cost;
         self.listener.at(self.done, name);
     }
 
@@ -94,12 +95,18 @@ impl Bench<'_> {
             || (has_pictures && (!row.error.is_empty() || job.judge == Judge::Time && !row.frame_ms.is_empty()))
     }
 
-    /// Renders the reference.
-    fn truth(&mut self, job: &Comparison) -> Result<Truth, BenchError> {
+    /// Renders the reference of each camera.
+    fn truths(&mut self, job: &Comparison) -> Result<Vec<Truth>, BenchError> {
+        let still = [job.reference.camera];
+        let cameras = if job.view.path.is_empty() { &still[..] } else { &job.view.path };
+        cameras.iter().map(|camera| self.truth(job, camera)).collect()
+    }
+
+    fn truth(&mut self, job: &Comparison, camera: &Camera) -> Result<Truth, BenchError> {
         let (width, height) = job.view.size;
         let mut film = Film::new(width, height, Planes { object: true, ..Planes::default() });
         let against = &job.reference;
-        self.render(&against.scene, &against.camera, &against.settings, &mut film)?;
+        self.render(&against.scene, camera, &against.settings, &mut film)?;
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         let counts = match &job.judge {
             Judge::Wrong(Some(subject)) => {
@@ -110,34 +117,45 @@ impl Bench<'_> {
         Ok(Truth { picture: EightBit::of_film(&film), counts })
     }
 
-    /// Renders a method's picture and judges it.
+    /// Renders a method's picture from each camera and judges it.
     fn look(
         &mut self,
         job: &Comparison,
         method: &Method,
         place: usize,
         film: &mut Film,
-        truth: Option<&Truth>,
+        truths: &[Truth],
     ) -> Result<(), BenchError> {
-        let mut run = Run::default();
-        if !self.timed(job, method, film, Some(job.longest_frame), &mut run)? {
-            self.records.rows[place].cut_off_ms = Some(job.longest_frame.as_secs_f64() * 1e3);
-            return self.save();
-        }
-        if run.frame_ms().median > SLOW_MS {
-            self.records.rows[place].add(&run);
-        }
-        if let Some(truth) = truth {
+        let mut errors = Vec::new();
+        let mut worst: Option<(f64, usize, EightBit)> = None;
+        for (number, camera) in job.view.cameras().iter().enumerate() {
+            let mut run = Run::default();
+            if !self.timed(job, method, camera, film, Some(job.longest_frame), &mut run)? {
+                self.records.rows[place].cut_off_ms = Some(job.longest_frame.as_secs_f64() * 1e3);
+                return self.save();
+            }
+            if run.frame_ms().median > SLOW_MS {
+                self.records.rows[place].add(&run);
+            }
+            let Some(truth) = truths.get(number) else { continue };
             let picture = EightBit::of_film(film);
             let error = match job.judge {
                 Judge::Time => BTreeMap::new(),
                 Judge::Metrics => judge::by_metrics(&truth.picture, &picture),
                 Judge::Wrong(_) => judge::by_share(&truth.picture, &picture, &truth.counts),
             };
-            if job.keeps_pictures {
-                self.keep_pictures(place, &picture, truth)?;
+            let rmse = error.get("rmse").copied().flatten().unwrap_or_default();
+            if worst.as_ref().is_none_or(|(greatest, ..)| rmse > *greatest) {
+                worst = Some((rmse, number, picture));
             }
-            self.records.rows[place].error = error;
+            errors.push(error);
+        }
+        if let Some((_, number, picture)) = worst {
+            if job.keeps_pictures {
+                self.keep_pictures(place, &picture, &truths[number])?;
+            }
+            let row = &mut self.records.rows[place];
+            (row.shown, row.error) = (number as u32, judge::of_all(&errors));
         }
         self.save()
     }
@@ -164,25 +182,35 @@ impl Bench<'_> {
         &mut self,
         job: &Comparison,
         method: &Method,
+        camera: &Camera,
         film: &mut Film,
         longest: Option<Duration>,
         run: &mut Run,
     ) -> Result<bool, BenchError> {
-        let View { scene, camera, .. } = &job.view;
+        let scene = &job.view.scene;
         self.guarded(method.settings.threads, longest, |scratch| {
             timed_frame(run, scene, camera, &method.settings, scratch, film)
         })
     }
 
-    /// One turn of a method: an untimed frame, then timed ones.
-    fn turn(&mut self, job: &Comparison, method: &Method, place: usize, film: &mut Film) -> Result<(), BenchError> {
+    /// One turn of a method: an untimed frame, then timed ones, all from the camera whose turn it is.
+    fn turn(
+        &mut self,
+        job: &Comparison,
+        method: &Method,
+        place: usize,
+        round: usize,
+        film: &mut Film,
+    ) -> Result<(), BenchError> {
+        let cameras = job.view.cameras();
+        let camera = &cameras[round % cameras.len()];
         if self.records.rows[place].frame_ms.median <= SLOW_MS {
-            self.timed(job, method, film, None, &mut Run::default())?;
+            self.timed(job, method, camera, film, None, &mut Run::default())?;
         }
         let start = Instant::now();
         for _ in 0..FRAMES_A_TURN {
             let mut run = Run::default();
-            self.timed(job, method, film, None, &mut run)?;
+            self.timed(job, method, camera, film, None, &mut run)?;
             self.records.rows[place].add(&run);
             if start.elapsed() > TURN {
                 break;

@@ -2,12 +2,10 @@
 
 use crate::measure::difference::difference_picture;
 use crate::measure::metric::{METRICS, Pair, Score};
+use crate::measure::pops::{Pops, Seen, is_visibly_wrong};
 use crate::measure::records::{FrameError, WRONG_SHARE};
 use crate::picture::{EightBit, Encoding, Picture};
 use std::collections::BTreeMap;
-
-/// Differences of more than so many steps of 255 are seen: as in the metric `pixels_off`.
-const SEEN: u8 = 2;
 
 /// Errors of `picture` by every metric.
 pub fn by_metrics(reference: &EightBit, picture: &EightBit) -> BTreeMap<String, Option<f64>> {
@@ -27,11 +25,32 @@ pub fn by_metrics(reference: &EightBit, picture: &EightBit) -> BTreeMap<String, 
 
 /// The share of pixels that are visibly wrong, in per cent of those that count; `None` where none does.
 pub fn by_share(reference: &EightBit, picture: &EightBit, counts: &[bool]) -> BTreeMap<String, Option<f64>> {
-    let wrong = visibly_wrong(reference, picture);
     let counted = counts.iter().filter(|counts| **counts).count();
-    let seen = wrong.iter().zip(counts).filter(|(wrong, counts)| **wrong && **counts).count();
+    let seen = visibly_wrong(reference, picture).zip(counts).filter(|(wrong, counts)| *wrong && **counts).count();
     let share = (counted > 0).then(|| 100.0 * seen as f64 / counted as f64);
     BTreeMap::from([(WRONG_SHARE.to_owned(), share)])
+}
+
+/// Errors of several pictures as one: of greatest errors the greatest, of roots and logarithms of a mean that of the mean,
+/// of all others the mean. What no picture has a value of has none.
+pub fn of_all(pictures: &[BTreeMap<String, Option<f64>>]) -> BTreeMap<String, Option<f64>> {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let of = |name: &str| -> Vec<f64> { pictures.iter().filter_map(|errors| errors.get(name).copied()?).collect() };
+    let squared = || mean(&of("rmse").iter().map(|rmse| rmse * rmse).collect::<Vec<_>>());
+    let all = |name: &String| {
+        let values = of(name);
+        let value = match name.as_str() {
+            "max_abs" | "p999_abs" => values.iter().copied().fold(0.0, f64::max),
+            "rmse" => squared().sqrt(),
+            "psnr" => -10.0 * libm::log10(squared()),
+            _ => mean(&values),
+        };
+        (name.clone(), Some(value).filter(|_| !values.is_empty()))
+    };
+    match pictures {
+        [alone] => alone.clone(),
+        _ => pictures.first().map(|errors| errors.keys().map(all).collect()).unwrap_or_default(),
+    }
 }
 
 /// The map of a picture's errors; `None` where it has none.
@@ -45,18 +64,13 @@ pub fn error_map(reference: &EightBit, picture: &EightBit) -> Option<EightBit> {
 /// Errors of frame after frame.
 #[derive(Default)]
 pub struct Frames {
-    /// Which pixels of the last frame were wrong.
-    wrong: Option<Vec<bool>>,
+    followed: Pops,
 }
 
 impl Frames {
     /// Takes the next frame.
     pub fn judge(&mut self, reference: &EightBit, picture: &EightBit) -> FrameError {
-        let wrong = visibly_wrong(reference, picture);
-        let changed = |before: &Vec<bool>| before.iter().zip(&wrong).filter(|(a, b)| a != b).count();
-        let pops = self.wrong.as_ref().map_or(0, changed) as f64;
-        let pixels_off = wrong.iter().filter(|wrong| **wrong).count() as f64;
-        self.wrong = Some(wrong);
+        let Seen { pixels_off, pops } = self.followed.add(visibly_wrong(reference, picture));
         // Equal pictures need no metric to say so.
         let pair = if reference == picture { None } else { pair(reference, picture) };
         let score = |name: &str| {
@@ -65,13 +79,13 @@ impl Frames {
             score.and_then(number).unwrap_or_default()
         };
         let (rmse, p999_abs) = (score("rmse"), score("p999_abs"));
-        FrameError { rmse, p999_abs, pixels_off, pops }
+        FrameError { rmse, p999_abs, pixels_off: pixels_off as f64, pops: pops as f64 }
     }
 }
 
-fn visibly_wrong(reference: &EightBit, picture: &EightBit) -> Vec<bool> {
-    let pixels = reference.rgb.chunks_exact(3).zip(picture.rgb.chunks_exact(3));
-    pixels.map(|(a, b)| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > SEEN)).collect()
+/// Which pixels are visibly wrong.
+fn visibly_wrong<'a>(reference: &'a EightBit, picture: &'a EightBit) -> impl Iterator<Item = bool> + 'a {
+    picture.rgb.chunks_exact(3).zip(reference.rgb.chunks_exact(3)).map(|(a, b)| is_visibly_wrong(a, b))
 }
 
 /// `None` for pictures of different sizes, which no bench makes.
@@ -110,19 +124,24 @@ mod tests {
     }
 
     #[test]
+    fn errors_along_a_path_are_those_of_all_its_pixels() {
+        let (exact, wrong) = (picture(&[0, 0, 0, 0]), picture(&[51, 0, 0, 0]));
+        let errors = [by_metrics(&exact, &exact), by_metrics(&exact, &wrong)];
+        let all = of_all(&errors);
+        let rmse = 0.2 / 8.0_f64.sqrt();
+        let near = |name: &str, wanted: f64| assert!((all[name].expect("it has") - wanted).abs() < 1e-6, "{name}");
+        near("rmse", rmse);
+        near("psnr", -20.0 * rmse.log10());
+        near("max_abs", 0.2);
+        near("pixels_off", 0.5);
+        assert_eq!(of_all(&errors[..1]), errors[0]);
+        assert_eq!(of_all(&[errors[0].clone(), errors[0].clone()])["psnr"], None);
+    }
+
+    #[test]
     fn shares_count_the_pixels_that_count() {
         let (a, b) = (picture(&[0, 0, 0, 0]), picture(&[9, 9, 1, 0]));
         assert_eq!(by_share(&a, &b, &[true, false, true, false])[WRONG_SHARE], Some(50.0));
         assert_eq!(by_share(&a, &b, &[false; 4])[WRONG_SHARE], None);
-    }
-
-    #[test]
-    fn pops_are_pixels_that_come_to_be_wrong_or_cease_to() {
-        let reference = picture(&[0, 0, 0, 0]);
-        let mut frames = Frames::default();
-        let first = frames.judge(&reference, &picture(&[9, 0, 0, 0]));
-        let second = frames.judge(&reference, &picture(&[0, 9, 9, 0]));
-        assert_eq!((first.pixels_off, first.pops), (1.0, 0.0));
-        assert_eq!((second.pixels_off, second.pops), (2.0, 3.0));
     }
 }

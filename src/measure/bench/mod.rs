@@ -128,6 +128,8 @@ fn new_row(key: Key, view: &View, method: &Method) -> Row {
         pixels: BTreeMap::new(),
         error: BTreeMap::new(),
         frames: Vec::new(),
+        views: view.cameras().len() as u32,
+        shown: 0,
         picture: None,
         map: None,
     }

@@ -14,7 +14,7 @@ impl Bench<'_> {
         let places: Vec<usize> = job.methods.iter().map(|method| self.place_of_walk(job, method)).collect();
         let followed = places.iter().map(|&place| self.records.rows[place].frames.len()).max().unwrap_or_default();
         let frames = if followed > 0 { followed } else { self.affordable_frames(job)? };
-        let cameras = &job.cameras[..frames.min(job.cameras.len())];
+        let cameras = &job.view.path[..frames.min(job.view.path.len())];
         for (method, place) in job.methods.iter().zip(places) {
             if !self.records.rows[place].complete {
                 let errors = self.follow(job, method, cameras)?;
@@ -22,7 +22,7 @@ impl Bench<'_> {
                 (row.frames, row.complete) = (errors, true);
                 self.save()?;
             }
-            self.done += job.cameras.len() as u64;
+            self.done += job.step();
             self.listener.at(self.done, &job.view.name);
         }
         Ok(())
@@ -44,15 +44,15 @@ impl Bench<'_> {
 
     /// How many frames of every method fit into the time that is given, by the cost of the second one; at least two.
     fn affordable_frames(&mut self, job: &Walk) -> Result<usize, BenchError> {
-        let (Some(method), [first, second, ..]) = (job.methods.first(), &job.cameras[..]) else {
-            return Ok(job.cameras.len());
+        let (Some(method), [first, second, ..]) = (job.methods.first(), &job.view.path[..]) else {
+            return Ok(job.view.path.len());
         };
         self.follow(job, method, &[*first])?;
         let start = Instant::now();
         self.follow(job, method, &[*second])?;
         let all = start.elapsed().as_secs_f64() * job.methods.len() as f64;
         let fitting = job.budget.as_secs_f64() / all;
-        Ok((fitting as usize).clamp(2, job.cameras.len()))
+        Ok((fitting as usize).clamp(2, job.view.path.len()))
     }
 
     /// Renders the frames of one method and their references.

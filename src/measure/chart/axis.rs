@@ -156,7 +156,7 @@ impl Area {
                 svg.text(self.left - 8.0, y + 4.0, Anchor::End, "tick", &short(value));
             }
         }
-        svg.text_upwards(self.left - 52.0, self.center().1, "", title);
+        svg.text_upwards(self.left - 60.0, self.center().1, "", title);
     }
 
     /// A line around all.

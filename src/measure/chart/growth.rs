@@ -35,7 +35,7 @@ fn chart(view: (&str, &str), rows: &[&Row], kind: &str, axis: &str) -> Option<Ch
     let size = format!("{}x{}, ", first.key.width, first.key.height);
     let note = format!("{}median frame time by the clock.", if kind == "pixels" { "" } else { &size });
     let mut svg = Svg::on_paper(SIZE, &title, &note);
-    let area = Area { left: 82.0, top: 66.0, right: SIZE.0 - ROOM_FOR_NAMES, bottom: SIZE.1 - 62.0 };
+    let area = Area { left: 86.0, top: 72.0, right: SIZE.0 - ROOM_FOR_NAMES, bottom: SIZE.1 - 62.0 };
     let points = || lines.iter().flat_map(|line| &line.points);
     let x = Axis::logarithmic(points().map(|(at, ..)| *at), area.left + 6.0, area.right - 6.0);
     let y = Axis::logarithmic(points().map(|(_, ms, _)| *ms), area.bottom - 6.0, area.top + 6.0);

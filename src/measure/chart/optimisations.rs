@@ -39,18 +39,20 @@ fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
             (*name, [alone, without])
         })
         .collect();
-    let size = (WIDTH, 150.0 + GROUP * bars.len() as f64);
+    let size = (WIDTH, 164.0 + GROUP * bars.len() as f64);
     let title = format!("What each optimisation is worth: {}", view_title(view));
     let note = format!(
-        "{}x{}, median CPU time of a frame, for threads the time by the clock; all on: {} ms, all off: {} ms. Whiskers: what the \
-         spread of frames (25 to 75 %) leaves open.",
+        "Median CPU time of a frame, for threads the time by the clock; all on: {} ms at {}x{}, all off: {} ms at {}x{}. \
+         Whiskers: what the spread of frames (25 to 75 %) leaves open.",
+        time_text(all),
         all.key.width,
         all.key.height,
-        time_text(all),
-        time_text(none)
+        time_text(none),
+        none.key.width,
+        none.key.height,
     );
     let mut svg = Svg::on_paper(size, &title, &note);
-    let area = Area { left: 190.0, top: 88.0, right: WIDTH - 90.0, bottom: size.1 - 56.0 };
+    let area = Area { left: 190.0, top: 102.0, right: WIDTH - 90.0, bottom: size.1 - 56.0 };
     let factors = bars.iter().flat_map(|(_, pair)| pair.iter().flatten());
     let ends = factors.flat_map(|factor| [factor.low, factor.high, factor.median]).chain([0.8, 2.0]);
     let x = Axis::logarithmic(ends, area.left, area.right);
@@ -61,8 +63,8 @@ fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
             .enumerate()
     {
         let left = area.left + 300.0 * i as f64;
-        svg.rectangle(left, 62.0, 12.0, 12.0, class);
-        svg.text(left + 18.0, 73.0, Anchor::Start, "", text);
+        svg.rectangle(left, 76.0, 12.0, 12.0, class);
+        svg.text(left + 18.0, 87.0, Anchor::Start, "", text);
     }
     for (i, (name, pair)) in bars.iter().enumerate() {
         let top = area.top + GROUP * i as f64 + 7.0;

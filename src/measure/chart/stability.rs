@@ -44,7 +44,7 @@ fn chart(records: &Records, difficulty: &Difficulty) -> Option<Chart> {
         first.key.width, first.key.height, difficulty.share_of
     );
     let mut svg = Svg::on_paper(SIZE, &title, &note);
-    let area = Area { left: 82.0, top: 66.0, right: SIZE.0 - ROOM_FOR_NAMES, bottom: SIZE.1 - 62.0 };
+    let area = Area { left: 86.0, top: 72.0, right: SIZE.0 - ROOM_FOR_NAMES, bottom: SIZE.1 - 62.0 };
     let band = EXACT_LINE * (lines.len() as f64 + 1.0);
     let errors = Area { bottom: area.bottom - band, ..area };
     let (from, to) = (area.left + 8.0, area.right - 8.0);

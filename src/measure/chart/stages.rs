@@ -20,23 +20,25 @@ pub fn charts(records: &Records) -> Vec<Chart> {
 fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
     let rows: Vec<&&Row> = rows.iter().filter(|row| !row.cpu_ms.is_empty()).collect();
     let first = rows.first()?;
-    let size = (WIDTH, 142.0 + BAR * rows.len() as f64);
+    let size = (WIDTH, 156.0 + BAR * rows.len() as f64);
     let title = format!("Where the time goes: {}", view_title(view));
     let note = format!(
         "{}x{}, mean of all timed frames, each thread by its own clock: what else the machine did meanwhile counts, too.",
         first.key.width, first.key.height
     );
     let mut svg = Svg::on_paper(size, &title, &note);
-    let area = Area { left: 170.0, top: 82.0, right: WIDTH - 80.0, bottom: size.1 - 56.0 };
-    let x = Axis::linear(rows.iter().map(|row| parts(row).iter().map(|(_, ms)| ms).sum()), area.left, area.right);
+    let area = Area { left: 170.0, top: 96.0, right: WIDTH - 80.0, bottom: size.1 - 56.0 };
+    // The sum stands behind its bar.
+    let room = |row| 1.08 * parts(row).iter().map(|(_, ms)| ms).sum::<f64>();
+    let x = Axis::linear(rows.iter().map(|row| room(row)), area.left, area.right);
     area.axis_below(&mut svg, &x, "time of a frame, summed over threads [ms]");
     let used: Vec<usize> = (0..=STAGES.len())
         .filter(|i| rows.iter().any(|row| parts(row).iter().any(|(stage, ms)| stage == i && *ms > 0.0)))
         .collect();
     let mut legend = area.left;
     for i in used {
-        svg.rectangle(legend, 58.0, 12.0, 12.0, &format!("part s{i}"));
-        svg.text(legend + 17.0, 69.0, Anchor::Start, "", stage_name(i));
+        svg.rectangle(legend, 72.0, 12.0, 12.0, &format!("part s{i}"));
+        svg.text(legend + 17.0, 83.0, Anchor::Start, "", stage_name(i));
         legend += 17.0 + text_width(stage_name(i), 13.0) + 18.0;
     }
     for (i, row) in rows.iter().enumerate() {

@@ -41,6 +41,21 @@ pub fn text_width(text: &str, font_size: f64) -> f64 {
     font_size * text.chars().map(width).sum::<f64>()
 }
 
+/// The lines of a text that is broken between words where it would get wider than `width`.
+fn wrapped(text: &str, font_size: f64, width: f64) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let line = lines.len() - 1;
+        let longer = if lines[line].is_empty() { word.to_owned() } else { format!("{} {word}", lines[line]) };
+        if lines[line].is_empty() || text_width(&longer, font_size) <= width {
+            lines[line] = longer;
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines
+}
+
 impl Svg {
     fn add(&mut self, element: std::fmt::Arguments<'_>) {
         // Writing to a string cannot fail.
@@ -53,7 +68,9 @@ impl Svg {
         let mut svg = Self::default();
         svg.rectangle(0.0, 0.0, width, height, "paper");
         svg.text(18.0, 26.0, Anchor::Start, "title", title);
-        svg.text(18.0, 45.0, Anchor::Start, "note", note);
+        for (i, line) in wrapped(note, 12.0, width - 36.0).iter().enumerate() {
+            svg.text(18.0, 45.0 + 15.0 * i as f64, Anchor::Start, "note", line);
+        }
         svg
     }
 
@@ -112,5 +129,19 @@ impl Svg {
             class(family),
             mark(family)
         ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_texts_are_broken_between_words_and_nothing_is_lost() {
+        let text = "a note that is much too long for one line of so narrow a chart";
+        let lines = wrapped(text, 12.0, 150.0);
+        assert!(lines.len() > 2 && lines.iter().all(|line| text_width(line, 12.0) <= 150.0), "{lines:?}");
+        assert_eq!(lines.join(" "), text);
+        assert_eq!(wrapped("unbreakable", 12.0, 5.0), ["unbreakable"]);
     }
 }

@@ -1,20 +1,27 @@
 //! Time against error, a panel a metric: the choice that a user of the program has.
 
 use super::axis::{Area, Axis};
-use super::labels::Labels;
+use super::labels::spread_out;
+use super::lines::ROOM_FOR_NAMES;
 use super::number::short;
 use super::palette::class;
-use super::svg::{Anchor, Svg, text_width};
+use super::svg::{Anchor, Svg};
 use super::{Chart, by_view, file_name, view_title};
 use crate::measure::records::{Part, Records, Row};
 
-const SIZE: (f64, f64) = (1180.0, 560.0);
+const WIDTH: f64 = 880.0;
+/// Height of a panel, without its axis.
+const PANEL: f64 = 380.0;
+/// From the top of a panel to that of the next.
+const STRIDE: f64 = 490.0;
 /// Height of one line within the rows for what has no error at all.
 const EXACT_LINE: f64 = 17.0;
 
-/// A metric's panel: its name, its axis title, and where it starts.
-const PANELS: [(&str, &str, f64); 2] =
-    [("flip", "mean FLIP [0 to 1, logarithmic]", 82.0), ("pixels_off", "visibly wrong pixels [%, logarithmic]", 666.0)];
+/// A metric's panel: its name, its axis title, and what an error of 0 is called.
+const PANELS: [(&str, &str, &str); 2] = [
+    ("flip", "mean FLIP [0 to 1, logarithmic]", "exact"),
+    ("pixels_off", "visibly wrong pixels [%, logarithmic]", "none"),
+];
 
 /// One chart for every view that settings were swept on.
 pub fn charts(records: &Records) -> Vec<Chart> {
@@ -22,18 +29,22 @@ pub fn charts(records: &Records) -> Vec<Chart> {
     let chart = |(view, rows): ((&str, &str), Vec<&Row>)| {
         let first = rows.first()?;
         let title = format!("Time against error: {}", view_title(view));
+        let places = if first.views > 1 { format!(" from {} places of the path", first.views) } else { String::new() };
         let note = format!(
-            "{}x{}, median of {} frames or more; whiskers: 5 % to 95 % of frames; dashed: the best error for the time; faint: \
-             something else is faster and no worse; visibly wrong: off by more than 2/255.",
+            "{}x{}, median of {} frames or more{places}; whiskers: 5 % to 95 % of frames; dashed: the best error for the time; \
+             faint: something else is faster and no worse; visibly wrong: off by more than 2/255.",
             first.key.width,
             first.key.height,
             rows.iter().filter(|row| row.cut_off_ms.is_none()).map(|row| row.frame_ms.len()).min().unwrap_or_default()
         );
-        let mut svg = Svg::on_paper(SIZE, &title, &note);
-        for panel in PANELS {
-            draw_panel(&mut svg, records, &rows, panel);
+        let size = (WIDTH, 108.0 + STRIDE * PANELS.len() as f64 - 48.0);
+        let mut svg = Svg::on_paper(size, &title, &note);
+        for (i, panel) in PANELS.into_iter().enumerate() {
+            let top = 108.0 + STRIDE * i as f64;
+            let area = Area { left: 86.0, top, right: WIDTH - ROOM_FOR_NAMES, bottom: top + PANEL };
+            draw_panel(&mut svg, area, records, &rows, panel);
         }
-        Some(Chart { name: file_name("tradeoff", view), section: view_title(view), title, size: SIZE, body: svg.0 })
+        Some(Chart { name: file_name("tradeoff", view), section: view_title(view), title, size, body: svg.0 })
     };
     views.filter_map(chart).collect()
 }
@@ -45,8 +56,7 @@ fn error_of(row: &Row, metric: &str) -> Option<f64> {
     Some(if metric == "pixels_off" { 100.0 * error / pixels } else { error })
 }
 
-fn draw_panel(svg: &mut Svg, records: &Records, rows: &[&Row], (metric, title, left): (&str, &str, f64)) {
-    let area = Area { left, top: 92.0, right: left + 490.0, bottom: SIZE.1 - 62.0 };
+fn draw_panel(svg: &mut Svg, area: Area, records: &Records, rows: &[&Row], (metric, title, none): (&str, &str, &str)) {
     let points: Vec<(&Row, f64)> = rows.iter().filter_map(|row| Some((*row, error_of(row, metric)?))).collect();
     let times = points.iter().flat_map(|(row, _)| [row.frame_ms.p5, row.frame_ms.median, row.frame_ms.p95]);
     let x = Axis::logarithmic(times, area.left + 8.0, area.right - 8.0);
@@ -64,27 +74,21 @@ fn draw_panel(svg: &mut Svg, records: &Records, rows: &[&Row], (metric, title, l
     svg.rectangle(area.left, errors.bottom, area.right - area.left, band, "band");
     area.axis_below(svg, &x, "median time of a frame [ms], logarithmic");
     errors.axis_left(svg, &y, title);
-    svg.text(area.left - 8.0, errors.bottom + band / 2.0 + 4.0, Anchor::End, "tick", "exact");
+    svg.text(area.left - 8.0, errors.bottom + band / 2.0 + 4.0, Anchor::End, "tick", none);
     speed_ups(svg, &area, &x, rows);
     area.frame(svg);
 
     let front = front(&points);
     let corners: Vec<(f64, f64)> = front.iter().map(|&i| place(points[i].0, points[i].1)).collect();
     svg.polyline(&corners, "front", "none");
-    let mut labels = Labels::within(Area {
-        left: area.left + 2.0,
-        top: area.top + 2.0,
-        right: area.right - 2.0,
-        bottom: area.bottom - 1.0,
-    });
-    for &(row, error) in &points {
-        let at = place(row, error);
-        labels.avoid(at);
-        labels.avoid_level(x.at(row.frame_ms.p5), x.at(row.frame_ms.p95), at.1);
+    let places: Vec<(f64, f64)> = points.iter().map(|&(row, error)| place(row, error)).collect();
+    // Names stand in a column, so that none covers another whatever the points do.
+    let wanted: Vec<f64> = places.iter().map(|(_, y)| *y).collect();
+    let heights = spread_out(&wanted, area.top + 4.0, area.bottom - 4.0);
+    for (at, height) in places.iter().zip(&heights) {
+        svg.line((at.0 + 7.0, at.1), (area.right + 14.0, *height), "leader");
     }
-    corners.windows(2).for_each(|ends| labels.avoid_line(ends[0], ends[1]));
-    for (i, &(row, error)) in points.iter().enumerate() {
-        let at = place(row, error);
+    for (i, (&(row, _), (&at, height))) in points.iter().zip(places.iter().zip(heights)).enumerate() {
         let faint = !front.contains(&i);
         let family = class(&row.family);
         let shade = if faint { " faint" } else { "" };
@@ -92,29 +96,8 @@ fn draw_panel(svg: &mut Svg, records: &Records, rows: &[&Row], (metric, title, l
         svg.line((ends.0, at.1), (ends.1, at.1), &format!("{family} whisker{shade}"));
         let number = records.rows.iter().position(|other| std::ptr::eq(other, row));
         svg.mark(at, &row.family, faint, &told(row), number);
-    }
-    // What must be found goes first: the front, the presets and the reference.
-    let named = |i: &usize| ["full", "exact", "balanced", "fast"].contains(&points[*i].0.key.method.as_str());
-    let mut order = front.clone();
-    order.extend((0..points.len()).filter(|i| named(i) && !front.contains(i)));
-    order.extend((0..points.len()).filter(|i| !named(i) && !front.contains(i)));
-    for i in order {
-        let (row, error) = points[i];
-        let (at, y) = place(row, error);
-        if error > 0.0 {
-            labels.place(svg, (at, y), &row.key.method);
-        } else {
-            beside_whisker(svg, &area, (x.at(row.frame_ms.p5), x.at(row.frame_ms.p95).max(at), y), &row.key.method);
-        }
-    }
-}
-
-/// A label at the right end of a whisker, or at its left end where the area ends before the label.
-fn beside_whisker(svg: &mut Svg, area: &Area, (from, to, y): (f64, f64, f64), text: &str) {
-    if to + 12.0 + text_width(text, 13.0) < area.right {
-        svg.text(to + 10.0, y + 4.5, Anchor::Start, "", text);
-    } else {
-        svg.text(from - 10.0, y + 4.5, Anchor::End, "", text);
+        svg.mark((area.right + 22.0, height), &row.family, faint, &told(row), None);
+        svg.text(area.right + 34.0, height + 4.5, Anchor::Start, "", &row.key.method);
     }
 }
 
@@ -156,8 +139,14 @@ fn front(points: &[(&Row, f64)]) -> Vec<usize> {
 pub fn told(row: &Row) -> String {
     let flags = if row.flags.is_empty() { "every default".to_owned() } else { row.flags.clone() };
     let score = |name: &str| row.error(name).map_or("-".to_owned(), short);
+    let shown = match row.views {
+        0 | 1 => String::new(),
+        views => {
+            format!("\nerrors of {views} places along the path; the picture is of place {}, the worst", row.shown + 1)
+        }
+    };
     format!(
-        "{}\n{flags}\nframe {} ms ({} to {}), CPU {} ms\nFLIP {}, RMSE {}, PSNR {} dB, greatest error {}\n{} pixels visibly wrong",
+        "{}\n{flags}\nframe {} ms ({} to {}), CPU {} ms\nFLIP {}, RMSE {}, PSNR {}, greatest error {}\n{} pixels visibly wrong{shown}",
         row.key.method,
         short(row.frame_ms.median),
         short(row.frame_ms.p5),
@@ -165,7 +154,7 @@ pub fn told(row: &Row) -> String {
         short(row.cpu_ms.min),
         score("flip"),
         score("rmse"),
-        score("psnr"),
+        row.error("psnr").map_or("without end".to_owned(), |psnr| format!("{} dB", short(psnr))),
         score("max_abs"),
         score("pixels_off"),
     )

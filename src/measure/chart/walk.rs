@@ -7,7 +7,7 @@ use super::svg::Svg;
 use super::{Chart, by_view, file_name, view_title};
 use crate::measure::records::{FrameError, Part, Records, Row};
 
-const SIZE: (f64, f64) = (1040.0, 690.0);
+const SIZE: (f64, f64) = (1040.0, 706.0);
 const STRIP: f64 = 160.0;
 const STRIDE: f64 = 194.0;
 
@@ -38,8 +38,8 @@ fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
     let mut svg = Svg::on_paper(SIZE, &title, &note);
     let frames = rows.iter().map(|row| row.frames.len()).max().unwrap_or_default();
     for (i, (unit, start, value)) in STRIPS.iter().enumerate() {
-        let top = 66.0 + STRIDE * i as f64;
-        let area = Area { left: 82.0, top, right: SIZE.0 - ROOM_FOR_NAMES, bottom: top + STRIP };
+        let top = 82.0 + STRIDE * i as f64;
+        let area = Area { left: 86.0, top, right: SIZE.0 - ROOM_FOR_NAMES, bottom: top + STRIP };
         let x = Axis::range(0.0, frames as f64 - 1.0, area.left + 6.0, area.right - 6.0);
         let line = |row: &&Row| Line {
             family: row.family.clone(),

@@ -11,6 +11,8 @@ mod psnr;
 mod rmse;
 mod ssim;
 
+pub use pixels_off::SEEN_STEPS;
+
 use crate::picture::{Encoding, Picture};
 use serde::Serialize;
 use std::fmt;

@@ -2,8 +2,11 @@
 
 use super::{Pair, Score};
 
-/// Two steps of an 8-bit channel, and a rounding error's room: a difference of exactly two steps is not "more".
-const THRESHOLD: f64 = 2.0 / 255.0 + 1e-6;
+/// Errors of more than so many steps of an 8-bit channel are seen.
+pub const SEEN_STEPS: u8 = 2;
+
+/// That, and a rounding error's room: a difference of exactly two steps is not "more".
+const THRESHOLD: f64 = SEEN_STEPS as f64 / 255.0 + 1e-6;
 
 /// The number of pixels with any channel off by more than 2/255.
 pub(super) fn pixels_off(pair: &Pair) -> Score {

@@ -1,16 +1,16 @@
 //! The page of a bench: all charts, what is told of each point, pictures and maps of errors, in one file that loads
 //! nothing.
 
+mod thumbnail;
+
 use super::chart::{self, Chart, STYLE, escaped, short};
 use super::records::{Part, Records, RecordsError, Row};
 use super::table::Table;
 use super::thesis;
 use crate::picture::PendingFile;
-use base64::Engine;
-use base64::prelude::BASE64_STANDARD;
 use serde_json::{Map, Value, json};
-use std::fs;
 use std::path::Path;
+use thumbnail::Reduce;
 
 const CSS: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
@@ -93,9 +93,10 @@ const VIEWER: &str = "<div class=\"viewer\" hidden><p class=\"told\"></p><div cl
 fn pictures(records: &Records, folder: &Path) -> Value {
     let (mut points, mut files) = (Map::new(), Map::new());
     for (number, row) in records.rows.iter().enumerate().filter(|(_, row)| row.key.part == Part::Settings) {
-        for name in [&row.picture, &row.map].into_iter().flatten() {
-            if !files.contains_key(name)
-                && let Some(data) = data_of(folder, name)
+        for (name, kind) in [(&row.picture, Reduce::Picture), (&row.map, Reduce::Map)] {
+            if let Some(name) = name
+                && !files.contains_key(name)
+                && let Some(data) = thumbnail::of(folder, name, kind)
             {
                 files.insert(name.clone(), data.into());
             }
@@ -103,14 +104,6 @@ fn pictures(records: &Records, folder: &Path) -> Value {
         points.insert(number.to_string(), json!([row.picture, row.map, chart::told(row)]));
     }
     json!({ "points": points, "files": files })
-}
-
-/// A picture as an address that holds it; `None` where it cannot be read, or lies elsewhere.
-fn data_of(folder: &Path, name: &str) -> Option<String> {
-    let kind = if name.ends_with(".png") { "png" } else { "jpeg" };
-    let inside = name.strip_prefix("pictures/").filter(|rest| !rest.contains(['/', '\\']))?;
-    let bytes = fs::read(folder.join("pictures").join(inside)).ok()?;
-    Some(format!("data:image/{kind};base64,{}", BASE64_STANDARD.encode(bytes)))
 }
 
 /// The rows of a chart of time against error.

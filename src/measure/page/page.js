@@ -24,7 +24,7 @@
     part.addEventListener("pointerleave", () => { told.hidden = true; });
   }
 
-  const show = mark => {
+  const show = (mark, scrolls) => {
     const [picture, map, text] = points[mark.dataset.point];
     const viewer = mark.closest("section").querySelector(".viewer");
     viewer.hidden = false;
@@ -34,17 +34,18 @@
       image.hidden = !files[file];
       if (files[file]) { image.src = files[file]; image.alt = name + " of " + text.split("\n")[0]; } else { image.removeAttribute("src"); }
     }
+    if (scrolls) viewer.scrollIntoView({ block: "nearest" });
     viewer.querySelector("figure:last-child figcaption").textContent = map
       ? "its errors: each pixel's greatest channel difference, dark violet for none to yellow for the greatest of this picture"
       : "no pixel differs from a ray for every pixel";
   };
   for (const mark of document.querySelectorAll(".point[data-point]")) {
-    mark.addEventListener("click", () => show(mark));
-    mark.addEventListener("keydown", event => { if (event.key === "Enter" || event.key === " ") { event.preventDefault(); show(mark); } });
+    mark.addEventListener("click", () => show(mark, true));
+    mark.addEventListener("keydown", event => { if (event.key === "Enter" || event.key === " ") { event.preventDefault(); show(mark, true); } });
   }
   // The reference picture to begin with: the first point of each chart.
   for (const section of document.querySelectorAll("section")) {
     const first = section.querySelector(".point[data-point]");
-    if (first) show(first);
+    if (first) show(first, false);
   }
 })();

@@ -30,8 +30,8 @@ pub struct Environment {
     pub effort: String,
     /// What was changed of the preset `exact` for all methods, as it is typed.
     pub flags: String,
-    /// A fingerprint of each scene.
-    pub scenes: BTreeMap<String, String>,
+    /// A fingerprint of what is to be seen in each view of a scene.
+    pub views: BTreeMap<String, String>,
 }
 
 impl Environment {
@@ -48,24 +48,29 @@ impl Environment {
             threads: thread_count(base.threads),
             effort: effort.to_owned(),
             flags: base.flags(),
-            scenes: BTreeMap::new(),
+            views: BTreeMap::new(),
         }
     }
 
     /// What makes figures of the two not comparable: its name, and both values.
     pub fn difference(&self, now: &Self) -> Option<(String, String, String)> {
+        let number = |count: usize| count.to_string();
+        let cores = (number(self.cores), number(now.cores));
+        let threads = (number(self.threads), number(now.threads));
         let fields = [
             ("machine", &self.machine, &now.machine),
+            ("number of cores", &cores.0, &cores.1),
+            ("number of threads", &threads.0, &threads.1),
             ("build", &self.build, &now.build),
             ("SIMD level", &self.simd, &now.simd),
             ("effort", &self.effort, &now.effort),
             ("set of flags", &self.flags, &now.flags),
         ];
-        let scenes = self.scenes.iter().filter_map(|(name, before)| Some((name, before, now.scenes.get(name)?)));
+        let views = self.views.iter().filter_map(|(name, before)| Some((name, before, now.views.get(name)?)));
         let mut all = fields
             .map(|(what, a, b)| (what.to_owned(), a, b))
             .into_iter()
-            .chain(scenes.map(|(name, before, now)| (format!("version of {name}"), before, now)));
+            .chain(views.map(|(name, before, now)| (format!("version of {name}"), before, now)));
         let (what, before, now) = all.find(|(_, before, now)| before != now)?;
         let shown = |text: &str| if text.is_empty() { "none".to_owned() } else { text.to_owned() };
         Some((what, shown(before), shown(now)))
@@ -79,7 +84,7 @@ impl Environment {
 }
 
 /// A short name for a file's contents; `None` where it cannot be read.
-pub fn fingerprint(file: &Path) -> Option<String> {
+fn fingerprint(file: &Path) -> Option<String> {
     let mut hasher = DefaultHasher::new();
     let mut file = File::open(file).ok()?;
     let mut block = vec![0; 1 << 16];

@@ -7,12 +7,13 @@ mod environment;
 mod row;
 
 pub use csv::WRONG_SHARE;
-pub use environment::{Environment, fingerprint};
+pub use environment::Environment;
 pub use row::{FrameError, Key, Part, Row, Samples};
 
 use crate::picture::{PendingFile, PictureError};
 use serde::{Deserialize, Serialize};
 use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -23,7 +24,7 @@ const VERSION: u32 = 1;
 #[derive(Debug, thiserror::Error)]
 pub enum RecordsError {
     /// The folder or a file in it.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: cannot be made or read: {source}; choose another folder", path.display())]
     Io {
         /// The file.
         path: PathBuf,
@@ -41,8 +42,14 @@ pub enum RecordsError {
         /// What is wrong.
         message: String,
     },
+    /// The folder holds a file that would be replaced, and that no bench wrote.
+    #[error("{}: is there, but no records beside it, so it is none of ours; choose another folder", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
     /// Measured under other conditions.
-    #[error("{}: was measured with another {what} ({before}, now {now}); choose another folder, or delete the file", path.display())]
+    #[error("{}: was measured with another {what} ({before}, now {now}); choose another folder, or delete this one", path.display())]
     Differs {
         /// The file.
         path: PathBuf,
@@ -98,16 +105,26 @@ impl Records {
     /// The records to go on with in `folder`, which is made if it is not there: those it holds, or none.
     ///
     /// # Errors
-    /// As for [`load`](Self::load); [`RecordsError::Differs`] where they were made elsewhere or with something else.
+    /// As for [`load`](Self::load); [`RecordsError::Foreign`]; [`RecordsError::Differs`] where they were made elsewhere or with something else.
     pub fn resume(folder: &Path, environment: Environment) -> Result<Self, RecordsError> {
         let io = |source| RecordsError::Io { path: folder.to_owned(), source };
         fs::create_dir_all(folder).map_err(io)?;
-        remove_leftovers(folder).map_err(io)?;
-        let Some(mut records) = Self::load(folder)? else { return Ok(Self::new(environment)) };
+        for folder in [folder.to_owned(), folder.join("pictures")] {
+            if folder.is_dir() {
+                remove_leftovers(&folder).map_err(io)?;
+            }
+        }
+        let Some(mut records) = Self::load(folder)? else {
+            let foreign = ["index.html", "records.csv", "pictures"].map(|name| folder.join(name));
+            return match foreign.into_iter().find(|path| path.exists()) {
+                Some(path) => Err(RecordsError::Foreign { path }),
+                None => Ok(Self::new(environment)),
+            };
+        };
         if let Some((what, before, now)) = records.environment.difference(&environment) {
             return Err(RecordsError::Differs { path: Self::file(folder), what, before, now });
         }
-        records.environment.scenes.extend(environment.scenes);
+        records.environment.views.extend(environment.views);
         Ok(records)
     }
 
@@ -147,10 +164,21 @@ impl Records {
     }
 }
 
-/// A file name made of parts, with nothing in it that a file system or a page could stumble over.
+/// A file name made of parts, with nothing in it that a file system or a page could stumble over. Parts that lose more by
+/// that than spaces and brackets end in a number of their own, so that no two share a file.
 pub fn file_name(parts: &[&str]) -> String {
-    let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '.' | '-') { c.to_ascii_lowercase() } else { '_' };
-    parts.iter().map(|part| part.chars().map(safe).collect::<String>()).collect::<Vec<_>>().join("-")
+    let is_safe = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
+    let part = |part: &&str| {
+        let safe: String = part.chars().map(|c| if is_safe(c) { c } else { '_' }).collect();
+        if part.chars().all(|c| is_safe(c) || matches!(c, ' ' | '(' | ')')) {
+            return safe;
+        }
+        let mut hasher = DefaultHasher::new();
+        part.hash(&mut hasher);
+        let short: String = safe.chars().take(60).collect();
+        format!("{short}_{:08x}", hasher.finish() as u32)
+    };
+    parts.iter().map(part).collect::<Vec<_>>().join("-")
 }
 
 /// Removes what a killed run had begun to write.
@@ -158,9 +186,26 @@ fn remove_leftovers(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        if name.starts_with(".records.") && name.ends_with(".part") {
+        if name.starts_with('.') && name.ends_with(".part") && path.is_file() {
             fs::remove_file(path)?;
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_names_are_plain_and_differ_where_names_do() {
+        assert_eq!(file_name(&["tradeoff", "gallery (built in)"]), "tradeoff-gallery__built_in_");
+        let names =
+            ["\u{421}\u{446}\u{435}\u{43d}\u{430}", "\u{421}\u{442}\u{435}\u{43d}\u{430}", "a/b", "a:b", "../x"];
+        let names = names.map(|name| file_name(&[name]));
+        for (i, name) in names.iter().enumerate() {
+            assert!(name.chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c)), "{name}");
+            assert!(!names[..i].contains(name), "{name} twice");
+        }
+    }
 }

@@ -140,6 +140,10 @@ pub struct Row {
     /// Errors along a walk, frame by frame.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub frames: Vec<FrameError>,
+    /// Places along a path that its errors are of: the greatest `max_abs` and `p999_abs`, the mean of all others.
+    pub views: u32,
+    /// Which of them the picture shows: the one with the greatest `rmse`.
+    pub shown: u32,
     /// The picture, a file in the folder.
     pub picture: Option<String>,
     /// The map of its errors, a file in the folder.

@@ -18,6 +18,8 @@ pub struct Difficulty {
     pub name: &'static str,
     /// What its numbers are, with their unit.
     pub axis: &'static str,
+    /// The unit alone.
+    pub unit: &'static str,
     /// Of which pixels the wrong ones are a share.
     pub share_of: &'static str,
     /// Whether small numbers are the hard ones.
@@ -54,7 +56,14 @@ pub fn jobs(base: &Settings, effort: &Effort) -> Result<Vec<Job>, SceneError> {
             let camera = scene.cameras[0].camera;
             jobs.push(Job::Compare(Comparison {
                 part: Part::Stability,
-                view: View { name: difficulty.name.to_owned(), scene, camera_name: "default".to_owned(), camera, size },
+                view: View {
+                    name: difficulty.name.to_owned(),
+                    scene,
+                    camera_name: "default".to_owned(),
+                    camera,
+                    path: Vec::new(),
+                    size,
+                },
                 at: Some(value),
                 reference: Reference { camera: against.cameras[0].camera, scene: against, settings: full.clone() },
                 judge: Judge::Wrong(difficulty.subject.map(|subject| subject())),

@@ -5,6 +5,7 @@ use super::Difficulty;
 pub const SCALES: Difficulty = Difficulty {
     name: "scales",
     axis: "scale of the scene [units a metre, logarithmic]; hard at both ends",
+    unit: "units a metre",
     share_of: "all pixels, against the picture at scale 1",
     falls: false,
     values: &[1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6],

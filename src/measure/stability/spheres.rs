@@ -5,6 +5,7 @@ use super::Difficulty;
 pub const SPHERES: Difficulty = Difficulty {
     name: "spheres",
     axis: "distance of the eye [radii of the sphere, logarithmic]; harder to the right",
+    unit: "radii away",
     share_of: "all pixels",
     falls: false,
     values: &[10.0, 30.0, 1e2, 3e2, 1e3, 3e3, 1e4, 3e4, 1e5, 3e5, 1e6],

@@ -12,6 +12,7 @@ const SUBJECT: Range<u32> = 1..COUNT + 1;
 pub const WIRES: Difficulty = Difficulty {
     name: "wires",
     axis: "width of the wires [pixels, logarithmic]; harder to the right",
+    unit: "pixels",
     share_of: "pixels that show a wire",
     falls: true,
     values: &[8.0, 6.0, 4.0, 3.0, 2.0, 1.5, 1.0, 0.7, 0.5, 0.35, 0.25, 0.15, 0.1, 0.07, 0.05],

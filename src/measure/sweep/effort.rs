@@ -11,15 +11,18 @@ pub struct Effort {
     pub quick: bool,
     /// Visits of each method, at most; a visit is an untimed frame and some timed ones.
     pub rounds: u32,
-    /// Time for all of one scene's jobs.
+    /// Cameras of a path that settings are compared from.
+    pub cameras: usize,
+    /// Time for all of one view's jobs.
     pub scene: Duration,
 }
 
 impl Effort {
     /// Under three minutes a scene on two cores.
-    pub const DEFAULT: Self = Self { name: "default", quick: false, rounds: 6, scene: Duration::from_secs(110) };
+    pub const DEFAULT: Self =
+        Self { name: "default", quick: false, rounds: 6, cameras: 6, scene: Duration::from_secs(110) };
     /// Under thirty seconds a scene.
-    pub const QUICK: Self = Self { name: "quick", quick: true, rounds: 3, scene: Duration::from_secs(18) };
+    pub const QUICK: Self = Self { name: "quick", quick: true, rounds: 3, cameras: 3, scene: Duration::from_secs(18) };
 
     /// A part of a scene's time, in per cent.
     pub(super) fn share(&self, percent: u32) -> Duration {

@@ -35,6 +35,7 @@ pub fn by_primitives(base: &Settings, effort: &Effort) -> Result<Vec<Job>, Scene
                 name: "cloud of spheres".to_owned(),
                 camera_name: "default".to_owned(),
                 camera,
+                path: Vec::new(),
                 size,
                 scene: scene.clone(),
             },

@@ -2,9 +2,12 @@
 
 use super::Method;
 use crate::measure::records::Part;
+use crate::render::{Film, Planes, Scratch, render_frame};
 use crate::scene::{Camera, Scene};
-use crate::settings::Settings;
+use crate::settings::{Settings, Supersample};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
+use std::slice;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -15,12 +18,47 @@ pub struct View {
     pub name: String,
     /// The scene.
     pub scene: Arc<Scene>,
-    /// What the camera is called.
+    /// What the camera is called, or how it moves.
     pub camera_name: String,
-    /// The camera.
+    /// The camera; of a path, that of its first frame.
     pub camera: Camera,
+    /// The camera of every frame of a path; none for a still view.
+    pub path: Vec<Camera>,
     /// Width and height in pixels.
     pub size: (u32, u32),
+}
+
+impl View {
+    /// What it is looked at from: one camera, or all of the path.
+    pub fn cameras(&self) -> &[Camera] {
+        if self.path.is_empty() { slice::from_ref(&self.camera) } else { &self.path }
+    }
+
+    /// The same with at most `count` cameras of its path, evenly apart, the first and the last among them.
+    pub fn sampled(mut self, count: usize) -> Self {
+        let last = self.path.len().saturating_sub(1);
+        if count < self.path.len() {
+            self.path = (0..count).map(|i| self.path[i * last / count.saturating_sub(1).max(1)]).collect();
+        }
+        self
+    }
+
+    /// The same at rest where a path would begin.
+    pub fn still(mut self) -> Self {
+        self.path.clear();
+        self
+    }
+
+    /// A short name for what is to be seen: of every camera, and of a small picture from the first. Textures and
+    /// everything else that a scene's file only names count through the picture.
+    pub fn fingerprint(&self, settings: &Settings) -> String {
+        let mut hasher = DefaultHasher::new();
+        format!("{:?}", self.cameras()).hash(&mut hasher);
+        let mut film = Film::new(160, 90, Planes::default());
+        render_frame(&self.scene, &self.camera, settings, &mut Scratch::default(), &mut film);
+        film.rgba().hash(&mut hasher);
+        format!("{:08x}", hasher.finish() as u32)
+    }
 }
 
 /// What a method's picture is held against.
@@ -28,7 +66,7 @@ pub struct View {
 pub struct Reference {
     /// The scene, which may be another than the one measured.
     pub scene: Arc<Scene>,
-    /// Its camera.
+    /// Its camera. Along a path it is the path's.
     pub camera: Camera,
     /// How it is rendered.
     pub settings: Settings,
@@ -50,7 +88,7 @@ pub enum Judge {
 pub struct Comparison {
     /// Which chart it feeds.
     pub part: Part,
-    /// What is looked at.
+    /// What is looked at. Each camera of a path is looked at once, and they take turns from round to round.
     pub view: View,
     /// The chart's other axis, such as a wire's width; `None` where it has none.
     pub at: Option<f64>,
@@ -73,10 +111,8 @@ pub struct Comparison {
 /// Methods along a moving camera: their errors from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Walk {
-    /// What is looked at; its camera is the first frame's.
+    /// What is looked at, along its path.
     pub view: View,
-    /// The camera of every frame.
-    pub cameras: Vec<Camera>,
     /// How the reference is rendered.
     pub reference: Settings,
     /// The methods.
@@ -94,12 +130,43 @@ pub enum Job {
     Walk(Walk),
 }
 
+impl View {
+    /// Roughly the milliseconds of one frame, at least 1: what progress is counted in.
+    fn frame_cost(&self, settings: &Settings) -> u64 {
+        /// Of one ray with all that it leads to, and the primitives that are tested without a tree in the same time.
+        const RAY_MS: f64 = 5e-5;
+        const TESTS: f64 = 40.0;
+        let rays = match settings.supersample {
+            Supersample::Off => 1,
+            Supersample::Adaptive => 4,
+            Supersample::Grid { side } => side * side,
+        };
+        let tests = if settings.bvh { 0.0 } else { self.scene.geometry.len() as f64 / TESTS };
+        let pixels = f64::from(self.size.0) * f64::from(self.size.1);
+        (pixels * f64::from(rays) * RAY_MS * (1.0 + tests)).max(1.0) as u64
+    }
+}
+
+impl Comparison {
+    /// What looking at a method's pictures, or one visit of it, counts in progress.
+    pub fn step(&self, method: &Method) -> u64 {
+        self.view.frame_cost(&method.settings).clamp(1, self.longest_frame.as_millis().max(1) as u64)
+    }
+}
+
+impl Walk {
+    /// What following a method counts in progress.
+    pub fn step(&self) -> u64 {
+        self.view.frame_cost(&self.reference) * self.view.path.len() as u64
+    }
+}
+
 impl Job {
-    /// How many steps of progress it is.
+    /// All of its steps of progress.
     pub fn steps(&self) -> u64 {
         match self {
-            Self::Compare(job) => job.methods.len() as u64 * u64::from(1 + job.rounds),
-            Self::Walk(job) => (job.methods.len() * job.cameras.len()) as u64,
+            Self::Compare(job) => job.methods.iter().map(|method| job.step(method) * u64::from(1 + job.rounds)).sum(),
+            Self::Walk(job) => job.step() * job.methods.len() as u64,
         }
     }
 

@@ -117,19 +117,27 @@ pub fn walk_methods(base: &Settings) -> Vec<Method> {
     made_of(WALK, base, false)
 }
 
-/// All optimisations, none, each alone, and all but each.
-pub fn optimisations(base: &Settings) -> Vec<Method> {
-    let method = |name: String, kept: &dyn Fn(usize) -> bool| {
-        let mut settings = base.clone();
-        OPTIMISATIONS.iter().enumerate().filter(|(i, _)| !kept(*i)).for_each(|(_, (_, off))| off(&mut settings));
-        Method { family: "exact", name, settings }
-    };
-    let mut methods = vec![method("all".to_owned(), &|_| true), method("none".to_owned(), &|_| false)];
-    for (i, (name, _)) in OPTIMISATIONS.iter().enumerate() {
-        methods.push(method(format!("only {name}"), &|other| other == i));
-        methods.push(method(format!("without {name}"), &|other| other != i));
-    }
-    methods
+/// `base` with the optimisations that are `kept`, by their places in the list.
+fn with_optimisations(base: &Settings, name: String, kept: impl Fn(usize) -> bool) -> Method {
+    let mut settings = base.clone();
+    OPTIMISATIONS.iter().enumerate().filter(|(i, _)| !kept(*i)).for_each(|(_, (_, off))| off(&mut settings));
+    Method { family: "exact", name, settings }
+}
+
+/// No optimisation, then each alone.
+pub fn optimisations_alone(base: &Settings) -> Vec<Method> {
+    let none = with_optimisations(base, "none".to_owned(), |_| false);
+    let each = OPTIMISATIONS.iter().enumerate();
+    let only = each.map(|(i, (name, _))| with_optimisations(base, format!("only {name}"), |other| other == i));
+    [none].into_iter().chain(only).collect()
+}
+
+/// All optimisations, then all but each.
+pub fn optimisations_taken_away(base: &Settings) -> Vec<Method> {
+    let all = with_optimisations(base, "all".to_owned(), |_| true);
+    let each = OPTIMISATIONS.iter().enumerate();
+    let without = each.map(|(i, (name, _))| with_optimisations(base, format!("without {name}"), |other| other != i));
+    [all].into_iter().chain(without).collect()
 }
 
 #[cfg(test)]
@@ -147,7 +155,9 @@ mod tests {
                 }
             }
         }
-        assert_eq!(optimisations(&base).len(), 2 + 2 * OPTIMISATIONS.len());
+        let (alone, taken_away) = (optimisations_alone(&base), optimisations_taken_away(&base));
+        assert_eq!((alone.len(), taken_away.len()), (1 + OPTIMISATIONS.len(), 1 + OPTIMISATIONS.len()));
+        assert_eq!(taken_away[0].settings, base);
     }
 
     #[test]

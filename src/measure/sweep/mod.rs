@@ -9,5 +9,8 @@ mod scene;
 pub use effort::Effort;
 pub use growth::by_primitives;
 pub use job::{Comparison, Job, Judge, Reference, View, Walk};
-pub use method::{Change, Method, OPTIMISATIONS, optimisations, stability_methods, sweep_methods, walk_methods};
+pub use method::{
+    Change, Method, OPTIMISATIONS, optimisations_alone, optimisations_taken_away, stability_methods, sweep_methods,
+    walk_methods,
+};
 pub use scene::of_scene;

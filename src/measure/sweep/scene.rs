@@ -1,6 +1,6 @@
 //! The jobs of one scene.
 
-use super::method::{optimisations, sweep_methods, walk_methods};
+use super::method::{optimisations_alone, optimisations_taken_away, sweep_methods, walk_methods};
 use super::{Comparison, Effort, Job, Judge, Method, Reference, View, Walk};
 use crate::measure::records::Part;
 use crate::scene::Camera;
@@ -13,15 +13,19 @@ const STEPS: u32 = 36;
 const STEP_PIXELS: f32 = 0.7;
 
 /// Settings against error, optimisations one by one, errors along a walk, and time against the number of pixels.
-/// `path` holds the cameras of a path; without one the camera takes some steps aside.
-pub fn of_scene(view: &View, base: &Settings, path: Option<Vec<Camera>>, effort: &Effort) -> Vec<Job> {
+/// Without a path the camera takes some steps aside for the walk; with one, settings are compared from several places
+/// along it, and all but these two begin where it does.
+pub fn of_scene(view: &View, base: &Settings, effort: &Effort) -> Vec<Job> {
     let full = Settings { visibility: Visibility::Full, ..base.clone() };
     let reference = Reference { scene: view.scene.clone(), camera: view.camera, settings: full.clone() };
     let comparison = |part, (width, height): (u32, u32), at, judge, methods: Vec<Method>, percent| {
         let budget = effort.share(percent);
         Job::Compare(Comparison {
             part,
-            view: View { size: (width.max(1), height.max(1)), ..view.clone() },
+            view: match part {
+                Part::Settings => View { size: (width.max(1), height.max(1)), ..view.clone() }.sampled(effort.cameras),
+                _ => View { size: (width.max(1), height.max(1)), ..view.clone() }.still(),
+            },
             at,
             reference: reference.clone(),
             judge,
@@ -40,19 +44,23 @@ pub fn of_scene(view: &View, base: &Settings, path: Option<Vec<Camera>>, effort:
     let size = effort.size(view.size);
     let half = (size.0 / 2, size.1 / 2);
     let mut jobs = vec![
-        comparison(Part::Settings, size, None, Judge::Metrics, sweep_methods(base, effort.quick), 60),
+        comparison(Part::Settings, size, None, Judge::Metrics, sweep_methods(base, effort.quick), 58),
         comparison(
             Part::Optimisations,
-            bare_size(view, half, effort.share(OPTIMISATIONS_SHARE) / SLOWEST),
+            bare_size(view, half, effort.share(OPTIMISATIONS_SHARE) / (2 * SLOWEST)),
             None,
             Judge::Time,
-            optimisations(base),
+            optimisations_alone(base),
             OPTIMISATIONS_SHARE,
         ),
+        // What is worth little in a tiny picture, such as beams, must not be judged by one.
+        comparison(Part::Optimisations, half, None, Judge::Time, optimisations_taken_away(base), OPTIMISATIONS_SHARE),
     ];
-    let small = View { size: (half.0.max(1), half.1.max(1)), ..view.clone() };
+    let mut small = View { size: (half.0.max(1), half.1.max(1)), ..view.clone() };
+    if small.path.is_empty() {
+        small.path = steps_aside(&view.camera, small.size.1);
+    }
     jobs.push(Job::Walk(Walk {
-        cameras: path.unwrap_or_else(|| steps_aside(&view.camera, small.size.1)),
         view: small,
         reference: full.clone(),
         methods: walk_methods(base),
@@ -67,10 +75,10 @@ pub fn of_scene(view: &View, base: &Settings, path: Option<Vec<Camera>>, effort:
     jobs
 }
 
-/// The part of a scene's time that optimisations are given, in per cent, and the part of that which the slowest frame,
-/// the one without any of them, may take.
-const OPTIMISATIONS_SHARE: u32 = 16;
-const SLOWEST: u32 = 8;
+/// The part of a scene's time that optimisations are given, in per cent, once for each alone and once for all but each;
+/// and the part of that which the slowest frame may take.
+const OPTIMISATIONS_SHARE: u32 = 9;
+const SLOWEST: u32 = 5;
 
 /// A size at which a frame without any optimisation should end within `longest`: `size`, or a smaller one of its shape.
 fn bare_size(view: &View, size: (u32, u32), longest: Duration) -> (u32, u32) {

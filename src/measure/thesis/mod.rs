@@ -92,7 +92,7 @@ pub fn views() -> Result<Vec<View>, SceneError> {
     ];
     let view = |(name, scene): (&str, Scene)| {
         let (camera, camera_name) = (scene.cameras[0].camera, scene.cameras[0].name.clone());
-        View { name: name.to_owned(), scene: Arc::new(scene), camera_name, camera, size: SIZE }
+        View { name: name.to_owned(), scene: Arc::new(scene), camera_name, camera, path: Vec::new(), size: SIZE }
     };
     Ok(scenes.into_iter().map(view).collect())
 }
@@ -118,7 +118,7 @@ pub fn jobs(view: &View, base: &Settings) -> Vec<Job> {
     let job = |density: u32| {
         Job::Compare(Comparison {
             part: Part::Thesis,
-            view: view.clone(),
+            view: view.clone().still(),
             at: Some(f64::from(density)),
             reference: reference.clone(),
             judge: Judge::Metrics,
