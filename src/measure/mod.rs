@@ -22,6 +22,9 @@ pub mod sweep;
 pub mod system;
 pub mod table;
 pub mod thesis;
+pub mod tune;
+
+mod watch;
 
 pub use motion::MotionMeter;
 pub use record::Record;

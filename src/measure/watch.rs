@@ -1,4 +1,4 @@
-//! Stops a frame that takes too long, or when the bench is asked to stop.
+//! Stops a frame that takes too long, or when measuring is asked to stop.
 
 use crate::render::CancelToken;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,7 +11,7 @@ const PERIOD: Duration = Duration::from_millis(10);
 
 /// A thread that watches the frame in work.
 pub(super) struct Watch {
-    /// Asks the bench to stop.
+    /// Asks measuring to stop.
     pub stop: CancelToken,
     frame: CancelToken,
     deadline: Arc<Mutex<Option<Instant>>>,
