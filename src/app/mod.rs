@@ -11,6 +11,7 @@ pub mod history;
 pub mod input;
 pub mod overlay;
 pub mod present;
+pub mod survey;
 pub mod walker;
 
 mod at_rest;
@@ -20,6 +21,7 @@ mod gpu;
 mod layer;
 mod look;
 mod lowering;
+mod measuring;
 mod pacing;
 mod session;
 mod steering;

@@ -23,8 +23,7 @@ pub mod system;
 pub mod table;
 pub mod thesis;
 pub mod tune;
-
-mod watch;
+pub mod watch;
 
 pub use motion::MotionMeter;
 pub use record::Record;

@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 /// Views of a path that candidates are timed and first judged on, at most.
 const VIEWS: usize = 3;
 /// Further visits of what is left of an axis, before the rest goes.
-const VISITS: usize = 2;
+const VISITS: usize = 4;
 /// Visits of the last candidates: an even number, so that their halves can be held against each other.
-const LAST_VISITS: usize = 12;
+const LAST_VISITS: usize = 24;
 /// The last candidates: how much slower than the best they may be, and how many there are.
 const LAST_SLACK: f64 = 1.15;
 const LAST: usize = 6;
@@ -22,8 +22,8 @@ const KEPT: usize = 6;
 /// Times from few visits that differ by less than this share are the same, and the least that any noise is taken for.
 const ROUGH_NOISE: f64 = 0.05;
 const LEAST_NOISE: f64 = 0.02;
-/// Visits in which a candidate has to prove faster than what it approximates, by more than the noise.
-const PROOFS: usize = 3;
+/// Visits in which a candidate has to prove faster than what it approximates, at least by a little.
+const PROOFS: usize = 6;
 /// A frame that takes this many times as long as what it should be faster than is dropped, after some time in any case.
 const HOPELESS: u32 = 3;
 const PATIENCE: Duration = Duration::from_millis(100);
@@ -147,7 +147,7 @@ impl Search<'_> {
                 let camera = &self.task.cameras[self.views[view]];
                 let Some(time) = self.studio.frame(camera, settings, &mut self.film, longest)? else { break };
                 trial.add(view, time);
-                is_faster = time < least * (1.0 - LEAST_NOISE);
+                is_faster = time < least * (1.0 - LEAST_NOISE / 2.0);
                 if is_faster {
                     break;
                 }
