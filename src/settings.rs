@@ -450,7 +450,15 @@ pub const ROWS: &[Row] = &[
             Ok(())
         },
     },
-    number_row!("min-weight", "secondary rays that weigh less are not traced", min_weight, 0.0, 1.0, Approximate, [1.0 / 512.0, 1.0 / 64.0, 1.0 / 16.0]),
+    number_row!(
+        "min-weight",
+        "secondary rays that weigh less are not traced",
+        min_weight,
+        0.0,
+        1.0,
+        Approximate,
+        [1.0 / 512.0, 1.0 / 64.0, 1.0 / 16.0]
+    ),
     choice_row!("tone-map", "curve between linear light and the 8-bit picture: none clamps, neutral is Khronos PBR Neutral",
         tone_map, ["none" => ToneMap::None, same; "neutral" => ToneMap::Neutral, different]),
     number_row!(

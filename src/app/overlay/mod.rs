@@ -156,6 +156,8 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
             let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(10.0).corner_radius(6.0);
             frame.show(ui, |ui| {
                 ui.set_max_width(WIDTH.min(available.width() - 4.0 * MARGIN).max(1.0));
+                // Without this an area that was small, its sections closed, would never grow again.
+                ui.set_max_height((available.height() - 4.0 * MARGIN).max(1.0));
                 status_line(ui, view, shown, &mut changes);
                 if shown.panel {
                     let height = available.bottom() - ui.cursor().top() - 3.0 * MARGIN;

@@ -139,7 +139,8 @@ fn flags(settings: &Settings) -> String {
 /// Time against error, both logarithmic; what is exact stands in a row of its own. The settings of the picture on display
 /// are at `drawn`.
 fn plot(ui: &mut Ui, survey: &Survey, drawn: Option<usize>) {
-    let least = survey.points.iter().map(|point| point.error).filter(|error| *error > 0.0).fold(f64::INFINITY, f64::min);
+    let least =
+        survey.points.iter().map(|point| point.error).filter(|error| *error > 0.0).fold(f64::INFINITY, f64::min);
     let exact_row = if least.is_finite() { libm::log10(least) - EXACT_ROW } else { -3.0 };
     let place = |place: usize| {
         let point = &survey.points[place];
@@ -196,7 +197,8 @@ fn plot(ui: &mut Ui, survey: &Survey, drawn: Option<usize>) {
         plot.text(exact.anchor(Align2::LEFT_BOTTOM).allow_hover(false));
     });
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "time against error"));
-    let words = if drawn.is_some() { "ring: the settings on display" } else { "the settings on display are not measured" };
+    let words =
+        if drawn.is_some() { "ring: the settings on display" } else { "the settings on display are not measured" };
     ui.label(RichText::new(words).small().color(theme::WEAK));
 }
 

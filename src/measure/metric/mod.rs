@@ -158,9 +158,19 @@ pub const METRICS: &[Metric] = &[
     },
     Metric { name: "rmse", help: "root mean square difference of all channels, 0 to 1", best: 0.0, score: rmse::rmse },
     Metric { name: "max_abs", help: "greatest difference of any channel, 0 to 1", best: 0.0, score: max_abs::max_abs },
-    Metric { name: "p999_abs", help: "99.9th percentile of all channels' differences", best: 0.0, score: p999_abs::p999_abs },
+    Metric {
+        name: "p999_abs",
+        help: "99.9th percentile of all channels' differences",
+        best: 0.0,
+        score: p999_abs::p999_abs,
+    },
     Metric { name: "ssim", help: "structural similarity of luma, 1 for equal pictures", best: 1.0, score: ssim::ssim },
-    Metric { name: "flip", help: "mean LDR-FLIP at 67 pixels a degree, 0 to 1; none with --hdr", best: 0.0, score: flip::flip },
+    Metric {
+        name: "flip",
+        help: "mean LDR-FLIP at 67 pixels a degree, 0 to 1; none with --hdr",
+        best: 0.0,
+        score: flip::flip,
+    },
     Metric {
         name: "pixels_off",
         help: "pixels with any channel off by more than 2/255",

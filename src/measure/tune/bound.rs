@@ -47,11 +47,7 @@ impl Bound {
     /// A score as an error, which is 0 for equal pictures and grows as they differ: psnr as the RMSE that it stands for.
     pub fn error(&self, score: f64) -> f64 {
         let best = self.metric.best;
-        if best.is_infinite() {
-            libm::pow(10.0, -score / 20.0)
-        } else {
-            (best - score).abs()
-        }
+        if best.is_infinite() { libm::pow(10.0, -score / 20.0) } else { (best - score).abs() }
     }
 }
 

@@ -10,20 +10,24 @@ use std::time::{Duration, Instant};
 
 /// Views of a path that candidates are timed and first judged on, at most.
 const VIEWS: usize = 3;
-/// Further visits of what is left of an axis, before the rest goes.
-const VISITS: usize = 4;
-/// Visits of the last candidates: an even number, so that their halves can be held against each other.
+/// Visits that everything is given that others are held against.
+const VISITS: usize = 5;
+/// Visits of the last candidates, and the time after which no further pair of them starts. They come in pairs, so that
+/// their halves can be held against each other.
 const LAST_VISITS: usize = 24;
+const LAST_TIME: Duration = Duration::from_secs(8);
 /// The last candidates: how much slower than the best they may be, and how many there are.
 const LAST_SLACK: f64 = 1.15;
 const LAST: usize = 6;
 /// Candidates that an axis hands on to the next, at most.
-const KEPT: usize = 6;
+const KEPT: usize = 8;
 /// Times from few visits that differ by less than this share are the same, and the least that any noise is taken for.
 const ROUGH_NOISE: f64 = 0.05;
 const LEAST_NOISE: f64 = 0.02;
 /// Visits in which a candidate has to prove faster than what it approximates, at least by a little.
 const PROOFS: usize = 6;
+/// By how much two visits may miss that, until the others are left out.
+const NEAR: f64 = 1.15;
 /// A frame that takes this many times as long as what it should be faster than is dropped, after some time in any case.
 const HOPELESS: u32 = 3;
 const PATIENCE: Duration = Duration::from_millis(100);
@@ -58,9 +62,9 @@ pub(super) fn run(task: &Task, studio: &mut dyn Studio) -> Result<Tuning, Stoppe
         search.truths.push(truth);
     }
     let first = search.look(&base, None)?;
-    search.visit(&[first], VISITS)?;
+    search.complete(&[first])?;
     let walked = search.walk(&axes, &base, first)?;
-    search.visit(&of_judged(&search.trials, task), VISITS)?;
+    search.complete(&of_judged(&search.trials, task))?;
     let (chosen, passed_over, noise) = search.choose()?;
     search.tell(1.0);
 
@@ -143,12 +147,12 @@ impl Search<'_> {
             let least = parent.map_or(f64::INFINITY, |parent| self.trials[parent].least(view));
             let longest = parent.map(|_| PATIENCE + Duration::from_secs_f64(least / 1e3) * HOPELESS);
             let mut is_faster = false;
-            for _ in 0..PROOFS {
+            for proof in 0..PROOFS {
                 let camera = &self.task.cameras[self.views[view]];
                 let Some(time) = self.studio.frame(camera, settings, &mut self.film, longest)? else { break };
                 trial.add(view, time);
                 is_faster = time < least * (1.0 - LEAST_NOISE / 2.0);
-                if is_faster {
+                if is_faster || proof > 0 && trial.least(view) > NEAR * least {
                     break;
                 }
             }
@@ -165,18 +169,26 @@ impl Search<'_> {
         Ok(self.trials.len() - 1)
     }
 
-    /// Times trials in turn, round by round, so that what else the machine does meets them alike.
-    fn visit(&mut self, places: &[usize], rounds: usize) -> Result<(), Stopped> {
-        for _ in 0..rounds {
-            for &place in places {
-                for view in 0..self.views.len() {
-                    let camera = &self.task.cameras[self.views[view]];
-                    let trial = &mut self.trials[place];
-                    if let Some(time) = self.studio.frame(camera, &trial.settings, &mut self.film, None)? {
-                        trial.add(view, time);
-                    }
+    /// Times trials in turn, so that what else the machine does meets them alike.
+    fn visit(&mut self, places: &[usize]) -> Result<(), Stopped> {
+        for &place in places {
+            for view in 0..self.views.len() {
+                let camera = &self.task.cameras[self.views[view]];
+                let trial = &mut self.trials[place];
+                if let Some(time) = self.studio.frame(camera, &trial.settings, &mut self.film, None)? {
+                    trial.add(view, time);
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// Visits trials until each has had its visits.
+    fn complete(&mut self, places: &[usize]) -> Result<(), Stopped> {
+        for visits in 1..=VISITS {
+            let missing: Vec<usize> =
+                places.iter().copied().filter(|&place| self.trials[place].visits() < visits).collect();
+            self.visit(&missing)?;
         }
         Ok(())
     }
@@ -219,7 +231,7 @@ impl Search<'_> {
                 self.tell(WALK * (done + weight(i) * nth as f64 / count) / all);
             }
             done += weight(i);
-            self.visit(&kept, VISITS)?;
+            self.complete(&kept)?;
             kept = front(&self.trials, &kept, &self.task.bounds, ROUGH_NOISE);
             kept.sort_by(|&a, &b| self.trials[a].cost().total_cmp(&self.trials[b].cost()));
             kept.truncate(KEPT);
@@ -259,16 +271,22 @@ impl Search<'_> {
             let slowest = LAST_SLACK * self.trials[best].cost();
             last.retain(|&place| self.trials[place].cost() <= slowest);
             last.truncate(LAST);
-            self.visit(&last, if last.len() > 1 { LAST_VISITS } else { VISITS })?;
+            let start = Instant::now();
+            for _ in 0..LAST_VISITS / 2 {
+                self.visit(&last)?;
+                self.visit(&last)?;
+                if last.len() == 1 || start.elapsed() > LAST_TIME {
+                    break;
+                }
+            }
             let noise = last.iter().map(|&place| self.trials[place].noise()).fold(LEAST_NOISE, f64::max);
             let cost = |place: usize| self.trials[place].cost();
             let fastest = last.iter().copied().min_by(|&a, &b| cost(a).total_cmp(&cost(b)));
             let least = fastest.map_or(f64::INFINITY, cost);
-            let simplest = last
-                .iter()
-                .copied()
-                .filter(|&place| cost(place) <= least * (1.0 + noise))
-                .min_by(|&a, &b| self.trials[a].changes().cmp(&self.trials[b].changes()).then(cost(a).total_cmp(&cost(b))));
+            let simplest =
+                last.iter().copied().filter(|&place| cost(place) <= least * (1.0 + noise)).min_by(|&a, &b| {
+                    self.trials[a].changes().cmp(&self.trials[b].changes()).then(cost(a).total_cmp(&cost(b)))
+                });
             let Some(chosen) = simplest else { return Ok((None, None, noise)) };
             if self.holds_everywhere(chosen)? {
                 return Ok((Some(chosen), fastest.filter(|fastest| *fastest != chosen), noise));
