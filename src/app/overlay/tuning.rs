@@ -7,7 +7,7 @@ use crate::measure::metric::{METRICS, Metric};
 use crate::measure::tune::Bound;
 use crate::settings::Settings;
 use egui::{Align2, Button, ComboBox, DragValue, ProgressBar, RichText, Ui, Vec2b};
-use egui_plot::{GridInput, GridMark, HLine, HoverPosition, Line, Plot, PlotPoint, PlotPoints, Points, Text};
+use egui_plot::{GridMark, HLine, HoverPosition, Line, Plot, PlotPoint, PlotPoints, Points, Text};
 
 /// Height of the plot in points.
 const HEIGHT: f32 = 190.0;
@@ -166,8 +166,8 @@ fn plot(ui: &mut Ui, survey: &Survey, drawn: Option<usize>) {
         .set_margin_fraction(egui::vec2(0.08, 0.1))
         .x_axis_label("CPU ms")
         .y_axis_label(axis_name(&survey.bound))
-        .x_grid_spacer(ticks)
-        .y_grid_spacer(ticks)
+        .x_grid_spacer(|input| ticks(input.bounds))
+        .y_grid_spacer(|input| ticks(input.bounds))
         .x_axis_formatter(|mark, _| short(libm::pow(10.0, mark.value)))
         .y_axis_formatter(move |mark, _| {
             if mark.value < exact_row + 0.3 * EXACT_ROW { String::new() } else { short(libm::pow(10.0, mark.value)) }
@@ -192,7 +192,8 @@ fn plot(ui: &mut Ui, survey: &Survey, drawn: Option<usize>) {
             let dot = Points::new("", vec![place(drawn)]).id("drawn").color(theme::WARNING).radius(7.0).filled(false);
             plot.points(dot.allow_hover(false));
         }
-        let left = plot.plot_bounds().min()[0];
+        // Where a point is: text beyond them would widen the plot, frame by frame.
+        let left = survey.points.iter().map(|point| libm::log10(point.cpu_ms)).fold(f64::INFINITY, f64::min);
         let exact = Text::new("", PlotPoint::new(left, exact_row), " exact").color(theme::WEAK);
         plot.text(exact.anchor(Align2::LEFT_BOTTOM).allow_hover(false));
     });
@@ -213,11 +214,11 @@ fn axis_name(bound: &Bound) -> String {
 }
 
 /// Lines at 1, 2 and 5 times powers of ten, on an axis of logarithms.
-fn ticks(input: GridInput) -> Vec<GridMark> {
-    let (first, last) = input.bounds;
+fn ticks((first, last): (f64, f64)) -> Vec<GridMark> {
     // Far apart, only the powers themselves.
     let digits: &[f64] = if last - first > 2.5 { &[1.0] } else { &[1.0, 2.0, 5.0] };
     let powers = (first.floor() as i32)..=(last.ceil() as i32);
     let marks = powers.flat_map(|power| digits.iter().map(move |digit| f64::from(power) + libm::log10(*digit)));
-    marks.map(|value| GridMark { value, step_size: 1.0 }).collect()
+    let inside = marks.filter(|value| (first..=last).contains(value));
+    inside.map(|value| GridMark { value, step_size: 1.0 }).collect()
 }

@@ -169,6 +169,14 @@ impl Search<'_> {
         Ok(self.trials.len() - 1)
     }
 
+    /// The trial of some settings, which are looked at unless they were before.
+    fn tried(&mut self, settings: &Settings, parent: Option<usize>) -> Result<usize, Stopped> {
+        match self.trials.iter().position(|trial| trial.settings == *settings) {
+            Some(place) => Ok(place),
+            None => self.look(settings, parent),
+        }
+    }
+
     /// Times trials in turn, so that what else the machine does meets them alike.
     fn visit(&mut self, places: &[usize]) -> Result<(), Stopped> {
         for &place in places {
@@ -193,10 +201,13 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Walks the axes from the trial `first`, then tries the presets and what else was asked for. False when the time was up.
+    /// Tries the presets and what else was asked for, then walks the axes from the trial `first`. False when the time was up.
     fn walk(&mut self, axes: &[Axis], base: &Settings, first: usize) -> Result<bool, Stopped> {
         /// What the walk is of the whole search, in time.
         const WALK: f64 = 0.85;
+        for settings in self.also(base) {
+            self.tried(&settings, None)?;
+        }
         let mut kept = vec![first];
         // Later axes start from more candidates.
         let weight = |i: usize| (axes[i].products(base).len() * (1 + i)) as f64;
@@ -222,8 +233,9 @@ impl Search<'_> {
                 if axis.is_ladder() && broken.contains(&parent) {
                     continue;
                 }
-                let place = self.look(&settings, Some(parent))?;
+                let place = self.tried(&settings, Some(parent))?;
                 match self.trials[place].verdict {
+                    Verdict::Holds if kept.contains(&place) => {}
                     Verdict::Holds => kept.push(place),
                     Verdict::Breaks => broken.push(parent),
                     Verdict::Slow => {}
@@ -237,11 +249,6 @@ impl Search<'_> {
             kept.truncate(KEPT);
         }
         self.tell(WALK);
-        for settings in self.also(base) {
-            if !self.trials.iter().any(|trial| trial.settings == settings) {
-                self.look(&settings, None)?;
-            }
-        }
         Ok(in_time)
     }
 
