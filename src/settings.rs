@@ -198,10 +198,27 @@ impl Settings {
 impl Settings {
     /// The flags that make these settings out of the preset `exact`, as they are typed; empty for `exact` itself.
     pub fn flags(&self) -> String {
-        let exact = Self::exact();
-        let changed = ROWS.iter().filter(|row| (row.get)(self) != (row.get)(&exact));
-        let flags: Vec<String> = changed.map(|row| format!("--{} {}", row.name, (row.get)(self))).collect();
+        let flags: Vec<String> = self.changed().map(|row| format!("--{} {}", row.name, (row.get)(self))).collect();
         flags.join(" ")
+    }
+
+    /// The rows that are not as in the preset `exact`.
+    pub fn changed(&self) -> impl Iterator<Item = &'static Row> + '_ {
+        let exact = Self::exact();
+        ROWS.iter().filter(move |row| (row.get)(self) != (row.get)(&exact))
+    }
+
+    /// The same picture without what approximates it, by a ray for every pixel: what errors are held against.
+    pub fn reference(&self) -> Self {
+        let exact = Self::exact();
+        let mut settings = self.clone();
+        for row in ROWS {
+            if row.promise(&(row.get)(self)) == Some(Promise::Approximate) {
+                // What a row prints it also reads.
+                let _ = (row.set)(&mut settings, &(row.get)(&exact));
+            }
+        }
+        Self { visibility: Visibility::Full, ..settings }
     }
 }
 
@@ -273,6 +290,8 @@ pub enum Kind {
         integer: bool,
         /// What changing it promises.
         promise: Promise,
+        /// Values that a search for cheap settings tries, besides the default; none where speed is not to be had.
+        tries: &'static [f64],
     },
 }
 
@@ -291,6 +310,19 @@ pub struct Row {
 }
 
 impl Row {
+    /// Whether a frame depends on this row at all, the others being as in `settings`.
+    pub fn has_effect(&self, settings: &Settings) -> bool {
+        let subsamples = settings.visibility == Visibility::Subsample;
+        match self.name {
+            "stride" => subsamples,
+            "fill" => settings.visibility != Visibility::Full,
+            "match-threshold" => subsamples && settings.fill == Fill::Color,
+            // Only the window looks at these.
+            "refine-at-rest" | "target-fps" | "present" => false,
+            _ => true,
+        }
+    }
+
     /// The promise of `value`; `None` when the row does not know the value.
     pub fn promise(&self, value: &str) -> Option<Promise> {
         match &self.kind {
@@ -359,11 +391,11 @@ macro_rules! switch_row {
 
 /// A row that takes a number within a range.
 macro_rules! number_row {
-    ($name:literal, $help:literal, $field:ident, $min:literal, $max:literal, $promise:ident) => {
+    ($name:literal, $help:literal, $field:ident, $min:literal, $max:literal, $promise:ident, $tries:expr) => {
         Row {
             name: $name,
             help: $help,
-            kind: Kind::Number { min: $min, max: $max, integer: false, promise: Promise::$promise },
+            kind: Kind::Number { min: $min, max: $max, integer: false, promise: Promise::$promise, tries: &$tries },
             get: |s| s.$field.to_string(),
             set: |s, text| number(text, $min, $max).map(|v| s.$field = v as f32),
         }
@@ -384,7 +416,8 @@ pub const ROWS: &[Row] = &[
         match_threshold,
         0.0,
         1.0,
-        Approximate
+        Approximate,
+        [4.0 / 255.0, 48.0 / 255.0]
     ),
     switch_row!("shadow-cache", "test the last blocker of a light before anything else", shadow_cache, ON_OFF_SAME),
     switch_row!("bvh", "bounding volume hierarchy; off tests every primitive", bvh, ON_OFF_SAME),
@@ -396,7 +429,7 @@ pub const ROWS: &[Row] = &[
     Row {
         name: "threads",
         help: "worker threads: 0 all cores, N that many, -N leaves N cores free",
-        kind: Kind::Number { min: -1024.0, max: 1024.0, integer: true, promise: Promise::SamePixels },
+        kind: Kind::Number { min: -1024.0, max: 1024.0, integer: true, promise: Promise::SamePixels, tries: &[] },
         get: |s| s.threads.to_string(),
         set: |s, text| integer(text, -1024, 1024).map(|v| s.threads = v as i32),
     },
@@ -410,14 +443,22 @@ pub const ROWS: &[Row] = &[
     Row {
         name: "depth",
         help: "most rays on a path, the primary included (default: the scene's, else 5)",
-        kind: Kind::Number { min: 1.0, max: 64.0, integer: true, promise: Promise::Different },
+        kind: Kind::Number { min: 1.0, max: 64.0, integer: true, promise: Promise::Different, tries: &[] },
         get: |s| s.depth.map_or_else(|| "scene".to_owned(), |d| d.to_string()),
         set: |s, text| {
             s.depth = if text == "scene" { None } else { Some(integer(text, 1, 64)? as u32) };
             Ok(())
         },
     },
-    number_row!("min-weight", "secondary rays that weigh less are not traced", min_weight, 0.0, 1.0, Approximate),
+    number_row!(
+        "min-weight",
+        "secondary rays that weigh less are not traced",
+        min_weight,
+        0.0,
+        1.0,
+        Approximate,
+        [1.0 / 512.0, 1.0 / 64.0, 1.0 / 16.0]
+    ),
     choice_row!("tone-map", "curve between linear light and the 8-bit picture: none clamps, neutral is Khronos PBR Neutral",
         tone_map, ["none" => ToneMap::None, same; "neutral" => ToneMap::Neutral, different]),
     number_row!(
@@ -426,9 +467,10 @@ pub const ROWS: &[Row] = &[
         render_scale,
         0.1,
         1.0,
-        Approximate
+        Approximate,
+        [0.85, 0.7, 0.6, 0.5, 0.35, 0.25]
     ),
-    number_row!("exposure", "stops of exposure before the tone curve", exposure, -20.0, 20.0, Different),
+    number_row!("exposure", "stops of exposure before the tone curve", exposure, -20.0, 20.0, Different, []),
     switch_row!(
         "refine-at-rest",
         "when motion stops, the window gathers samples up to the picture of supersample 16, then rests; on by default in the window, without effect elsewhere",
@@ -438,7 +480,7 @@ pub const ROWS: &[Row] = &[
     Row {
         name: "target-fps",
         help: "frames a second for which the window lowers the preset, then the render scale, while moving; off or 0 lowers nothing",
-        kind: Kind::Number { min: 0.0, max: 240.0, integer: true, promise: Promise::Approximate },
+        kind: Kind::Number { min: 0.0, max: 240.0, integer: true, promise: Promise::Approximate, tries: &[] },
         get: |s| s.target_fps.map_or_else(|| "off".to_owned(), |fps| fps.to_string()),
         set: |s, text| {
             let fps = if text == "off" { 0 } else { integer(text, 0, 240)? as u32 };

@@ -2,7 +2,7 @@
 //!
 //! The main thread runs the event loop: it gathers input, moves the walker, uploads, draws and presents, each a
 //! matter of milliseconds. Frames are traced on a thread of their own ([`tracer`]), so that neither input nor the
-//! overlay ever waits for one.
+//! overlay ever waits for one. A search for cheap settings shares that thread and gives way to every frame ([`measuring`]).
 //!
 //! Architecture invariant: with nothing moved and nothing changed, nothing is traced, drawn or woken up for.
 
@@ -11,6 +11,7 @@ pub mod history;
 pub mod input;
 pub mod overlay;
 pub mod present;
+pub mod survey;
 pub mod walker;
 
 mod at_rest;
@@ -20,6 +21,7 @@ mod gpu;
 mod layer;
 mod look;
 mod lowering;
+mod measuring;
 mod pacing;
 mod session;
 mod steering;

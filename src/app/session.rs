@@ -8,13 +8,16 @@ use super::history::History;
 use super::input::{Command, Keys};
 use super::layer::Layer;
 use super::lowering::{lowered, presets_below};
-use super::overlay::{self, Change, Showing, Shown, View};
+use super::overlay::{self, Change, Showing, Shown, Tuning, View};
 use super::pacing::{Limiter, Rates};
 use super::present::Presenter;
 use super::steering::Steering;
+use super::survey::{self, End, Survey};
 use super::tracer::{Job, TracedFrame, Tracer, Word};
 use super::walker::{self, Walker};
 use super::{AppExit, AppOptions};
+use crate::measure::metric::{METRICS, metric};
+use crate::measure::tune::{Bound, Task};
 use crate::render::FrameStats;
 use crate::scene::{Camera, Scene};
 use crate::settings::Settings;
@@ -34,6 +37,8 @@ const ASK_AGAIN: Duration = Duration::from_millis(100);
 const DEVICE_TRIAL: Duration = Duration::from_secs(10);
 /// Most pixels of a traced picture (8K): larger windows show it enlarged.
 const MAX_PIXELS: f64 = 7680.0 * 4320.0;
+/// A search tries no new settings after this time.
+const SEARCH_BUDGET: Duration = Duration::from_secs(30);
 /// Pixels of smooth scrolling that count as one notch of a wheel.
 const PIXELS_PER_NOTCH: f64 = 40.0;
 
@@ -59,6 +64,9 @@ pub struct Session {
     /// What the last frame shows, and with how many samples a pixel if it was refined.
     traced: Option<(Job, Option<u32>)>,
     steering: Steering,
+    /// What the next search has to keep, and what is known of the last.
+    bound: Bound,
+    survey: Option<Survey>,
     /// Where the walker last was, and since when it has been there.
     stands: (Camera, Option<Instant>),
     fresh: Option<TracedFrame>,
@@ -110,6 +118,8 @@ impl Session {
             posted: None,
             traced: None,
             steering: Steering::new(presets_below(&options.settings)),
+            bound: overlay::usual_bound(metric("flip").unwrap_or(&METRICS[0])),
+            survey: None,
             stands: (options.camera, None),
             fresh: None,
             rates,
@@ -233,8 +243,12 @@ impl Session {
         false
     }
 
-    /// Takes the newest frame from the tracer, to be shown when it is time.
+    /// Takes the newest frame from the tracer, to be shown when it is time, and what a search has come to.
     pub fn fetch_frame(&mut self) {
+        if let Some(survey) = self.tracer.take_survey() {
+            self.survey = Some(survey);
+            self.figures.demand(Instant::now(), self.rates.figures);
+        }
         let Some(frame) = self.tracer.take() else { return };
         let now = Instant::now();
         if frame.samples.is_none() {
@@ -366,6 +380,12 @@ impl Session {
             fov: self.walker.fov(),
             sensitivity: self.walker.sensitivity,
             invert_look: self.walker.invert_look,
+            tuning: Tuning {
+                bound: self.bound,
+                survey: self.survey.as_ref(),
+                drawn: self.traced.as_ref().map_or(&self.settings, |(job, _)| &job.settings),
+                is_elsewhere: self.survey.as_ref().is_some_and(|survey| survey.camera != self.walker.camera()),
+            },
         };
         let mut changes = Vec::new();
         let shown = self.shown;
@@ -411,8 +431,38 @@ impl Session {
             Change::Fov(fov) => self.walker.set_fov(fov),
             Change::Sensitivity(sensitivity) => self.walker.sensitivity = sensitivity,
             Change::InvertLook(invert) => self.walker.invert_look = invert,
+            Change::Bound(bound) => self.bound = bound,
+            Change::Search(bound) => self.search(bound),
+            Change::StopSearch => {
+                self.tracer.stop_search();
+                if let Some(survey) = &mut self.survey {
+                    survey.end.get_or_insert(End::Stopped);
+                }
+            }
             Change::TogglePanel => self.shown = self.shown.with_panel_toggled(),
         }
+    }
+
+    /// Starts a search on what is seen from here.
+    fn search(&mut self, bound: Bound) {
+        let size = picture_size(self.gpu.size());
+        if size.0 == 0 || size.1 == 0 {
+            return;
+        }
+        let camera = self.walker.camera();
+        let settings = survey::of_frames(&self.settings, self.scene.render.max_depth);
+        let task = Task {
+            cameras: vec![camera],
+            size,
+            settings: settings.clone(),
+            fixed: Vec::new(),
+            bounds: vec![bound],
+            also: vec![settings],
+            budget: SEARCH_BUDGET,
+        };
+        let survey = Survey::new(camera, bound);
+        self.survey = Some(survey.clone());
+        self.tracer.search(task, survey);
     }
 
     /// Starts over on a new device, unless the old one did not even last.

@@ -6,6 +6,9 @@
 
 use super::at_rest::{self, AtRest};
 use super::lowering::Lowering;
+use super::measuring::{Measuring, Search};
+use super::survey::Survey;
+use crate::measure::tune;
 use crate::render::{CancelToken, Film, FrameStats, Planes, Scratch, render_frame};
 use crate::scene::{Camera, Scene};
 use crate::settings::Settings;
@@ -72,7 +75,7 @@ pub type Render<'a> = &'a mut dyn FnMut(&Job, &mut Film) -> FrameStats;
 /// What the tracing thread sends word of. Called on that thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Word {
-    /// A frame can be [taken](Tracer::take).
+    /// A frame can be [taken](Tracer::take), or a [survey](Tracer::take_survey).
     Frame,
     /// The thread is gone: after a stop, or because the renderer panicked.
     Gone,
@@ -80,17 +83,33 @@ pub enum Word {
 
 /// What both threads see.
 #[derive(Debug, Default)]
-struct Exchange {
-    job: Option<Job>,
+pub(super) struct Exchange {
+    pub job: Option<Job>,
     running: Option<(Job, Instant)>,
     /// The last view is being refined.
     refining: bool,
+    /// A search that runs while there is nothing to trace.
+    pub search: Search,
     done: Option<TracedFrame>,
     spare: Vec<Film>,
     stop: bool,
 }
 
 impl Exchange {
+    /// Whether a search under way has to end.
+    pub fn has_to_stop(&self) -> bool {
+        self.stop || self.search.stop || self.search.asked.is_some()
+    }
+
+    /// Takes the job that waits, and notes that its frame begins.
+    pub fn begin_frame(&mut self, cancel: &CancelToken) -> Option<Job> {
+        let job = self.job.take()?;
+        // Under the same lock as `post` and `drop`, so that no request to stop is lost.
+        cancel.reset();
+        self.running = Some((job.clone(), Instant::now()));
+        Some(job)
+    }
+
     /// A film for the picture of `job`, if one is left over; those of another size are dropped.
     fn spare_film(&mut self, job: &Job) -> Option<Film> {
         self.spare.retain(|film| (film.width(), film.height()) == (job.width, job.height));
@@ -105,14 +124,14 @@ impl Exchange {
 }
 
 #[derive(Debug, Default)]
-struct Shared {
+pub(super) struct Shared {
     exchange: Mutex<Exchange>,
     wake: Condvar,
 }
 
 impl Shared {
     /// A panic in the renderer must not take the window down with it: poisoned data is as good as any.
-    fn lock(&self) -> MutexGuard<'_, Exchange> {
+    pub fn lock(&self) -> MutexGuard<'_, Exchange> {
         self.exchange.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -153,15 +172,40 @@ impl Tracer {
         Ok(Self { shared, cancel, thread: Some(thread) })
     }
 
-    /// Asks for a frame, in place of one that was asked for and not begun. What is refined is dropped at once.
+    /// Asks for a frame, in place of one that was asked for and not begun. What is refined or measured is dropped at once.
     pub fn post(&self, job: Job) {
         let mut exchange = self.shared.lock();
         exchange.job = Some(job);
-        if exchange.refining {
+        if exchange.refining || exchange.search.in_frame {
             self.cancel.cancel();
         }
         drop(exchange);
         self.shared.wake.notify_one();
+    }
+
+    /// Starts a search between the frames, in place of one that is under way; tells of it in `survey`.
+    pub fn search(&self, task: tune::Task, survey: Survey) {
+        let mut exchange = self.shared.lock();
+        exchange.search.asked = Some((task, survey));
+        if exchange.refining || exchange.search.in_frame {
+            self.cancel.cancel();
+        }
+        drop(exchange);
+        self.shared.wake.notify_one();
+    }
+
+    /// Ends the search that is under way, or was asked for.
+    pub fn stop_search(&self) {
+        let mut exchange = self.shared.lock();
+        (exchange.search.stop, exchange.search.asked) = (true, None);
+        if exchange.search.in_frame {
+            self.cancel.cancel();
+        }
+    }
+
+    /// The newest news of a search, once.
+    pub fn take_survey(&self) -> Option<Survey> {
+        self.shared.lock().search.survey.take()
     }
 
     /// Drops the running frame if newer settings have waited for long enough; else says when to ask again, if ever.
@@ -223,12 +267,14 @@ enum Task {
     Frame(Job),
     /// One more sample a pixel of the last view.
     Pass,
+    /// A search for cheap settings.
+    Search(Box<(tune::Task, Survey)>),
 }
 
-struct Worker {
-    shared: Arc<Shared>,
-    cancel: CancelToken,
-    interval: Duration,
+pub(super) struct Worker {
+    pub shared: Arc<Shared>,
+    pub cancel: CancelToken,
+    pub interval: Duration,
 }
 
 impl Worker {
@@ -242,6 +288,11 @@ impl Worker {
                     self.trace(job, render, &mut at_rest)
                 }
                 Task::Pass => self.refine(render, &mut at_rest),
+                Task::Search(search) => {
+                    let (task, survey) = *search;
+                    Measuring::new(self, render, &mut at_rest, word, survey).run(&task);
+                    false
+                }
             };
             if has_frame {
                 word(Word::Frame);
@@ -256,26 +307,29 @@ impl Worker {
             if exchange.stop {
                 return None;
             }
+            if exchange.job.is_none()
+                && let Some(search) = exchange.search.asked.take()
+            {
+                exchange.search.stop = false;
+                return Some(Task::Search(Box::new(search)));
+            }
             let due = if exchange.job.is_some() { Some(not_before) } else { pass_due };
             let wait = due.map(|due| due.saturating_duration_since(Instant::now()));
             exchange = match wait {
                 None => self.shared.wake.wait(exchange).unwrap_or_else(PoisonError::into_inner),
-                Some(Duration::ZERO) => break exchange.job.take(),
+                Some(Duration::ZERO) => break exchange.begin_frame(&self.cancel),
                 Some(wait) => self.shared.wake.wait_timeout(exchange, wait).unwrap_or_else(PoisonError::into_inner).0,
             };
         };
-        // Under the same lock as `post` and `drop`, so that no request to stop is lost.
-        self.cancel.reset();
-        let Some(job) = job else {
+        if job.is_none() {
+            self.cancel.reset();
             exchange.refining = true;
-            return Some(Task::Pass);
-        };
-        exchange.running = Some((job.clone(), Instant::now()));
-        Some(Task::Frame(job))
+        }
+        Some(job.map_or(Task::Pass, Task::Frame))
     }
 
     /// Traces a frame and puts it into the box; false for one that was dropped on the way.
-    fn trace(&self, job: Job, render: Render<'_>, at_rest: &mut AtRest) -> bool {
+    pub fn trace(&self, job: Job, render: Render<'_>, at_rest: &mut AtRest) -> bool {
         let mut film = self.film_for(&job);
         let stats = render(&job, &mut film);
         let mut exchange = self.shared.lock();
@@ -318,6 +372,7 @@ impl Worker {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::survey::End;
     use crate::settings::Supersample;
     use std::sync::atomic::{AtomicUsize, Ordering};
     use std::sync::mpsc::{Receiver, channel};
@@ -533,5 +588,72 @@ mod tests {
         let (tracer, words) = start(|_, _| std::panic::resume_unwind(Box::new("broken")), CancelToken::default());
         tracer.post(job(4, 0.0));
         assert_eq!(words.recv_timeout(SOON), Ok(Word::Gone));
+    }
+
+    /// A search on a small picture.
+    fn search() -> (tune::Task, Survey) {
+        let bound = tune::Bound::parse("flip=0.01").expect("right");
+        let task = tune::Task {
+            cameras: vec![Camera::default()],
+            size: (16, 9),
+            settings: Settings::exact(),
+            fixed: Vec::new(),
+            bounds: vec![bound],
+            also: Vec::new(),
+            budget: SOON,
+        };
+        (task, Survey::new(Camera::default(), bound))
+    }
+
+    /// Waits for the end of a search; the widths of the frames that came meanwhile.
+    fn end_of(tracer: &Tracer, words: &Receiver<Word>) -> (End, Vec<u32>) {
+        let mut widths = Vec::new();
+        loop {
+            assert_eq!(words.recv_timeout(SOON), Ok(Word::Frame));
+            widths.extend(tracer.take().map(|frame| frame.film.width()));
+            if let Some(end) = tracer.take_survey().and_then(|survey| survey.end) {
+                return (end, widths);
+            }
+        }
+    }
+
+    #[test]
+    fn a_search_gives_way_to_frames_and_then_goes_on() {
+        let (began, begins) = channel();
+        let render = move |job: &Job, _: &mut Film| {
+            began.send(job.width).unwrap_or(());
+            std::thread::sleep(Duration::from_millis(1));
+            FrameStats { completed: true, ..FrameStats::default() }
+        };
+        let (tracer, words) = start(render, CancelToken::default());
+        let (task, survey) = search();
+        tracer.search(task, survey);
+        assert_eq!(begins.recv_timeout(SOON), Ok(16));
+        tracer.post(job(4, 0.0));
+        let (end, widths) = end_of(&tracer, &words);
+        assert!(matches!(end, End::Found { .. }), "{end:?}");
+        assert_eq!(widths, [4]);
+        let measured = begins.try_iter().skip_while(|width| *width == 16).skip(1).collect::<Vec<_>>();
+        assert!(measured.len() > 10 && measured.iter().all(|width| *width == 16), "{measured:?}");
+    }
+
+    #[test]
+    fn a_search_is_stopped_in_the_middle_of_a_frame() {
+        let cancel = CancelToken::default();
+        let asked = cancel.clone();
+        let (began, begins) = channel();
+        let render = move |job: &Job, _: &mut Film| {
+            began.send(job.width).unwrap_or(());
+            while !asked.is_cancelled() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            FrameStats { completed: false, ..FrameStats::default() }
+        };
+        let (tracer, words) = start(render, cancel);
+        let (task, survey) = search();
+        tracer.search(task, survey);
+        assert_eq!(begins.recv_timeout(SOON), Ok(16));
+        tracer.stop_search();
+        assert_eq!(end_of(&tracer, &words).0, End::Stopped);
     }
 }

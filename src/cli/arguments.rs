@@ -5,6 +5,7 @@ use super::values;
 use clap::{Arg, ArgAction, Command, crate_version, value_parser};
 use raywalk::math::simd;
 use raywalk::measure::metric::METRICS;
+use raywalk::measure::tune::Bound;
 use raywalk::picture::FORMATS;
 use raywalk::scene::Limits;
 use raywalk::settings::{Kind, PRESETS, ROWS, Row, Settings};
@@ -24,7 +25,7 @@ pub fn command() -> Command {
         .args_conflicts_with_subcommands(true)
         .subcommand_precedence_over_arg(true)
         .max_term_width(120);
-    with_shared(view).subcommands([render(), bench(), info(), compare()])
+    with_shared(view).subcommands([render(), bench(), tune(), info(), compare()])
 }
 
 fn render() -> Command {
@@ -89,6 +90,30 @@ fn bench() -> Command {
     with_options(command)
         .mut_arg("camera", again("A camera of the scene, or all of them; may be given again [default: the first]"))
         .mut_arg("path", again("Move the camera along a path; may be given again"))
+}
+
+fn tune() -> Command {
+    let metrics: Vec<String> = METRICS.iter().map(|metric| format!("{}: {}", metric.name, metric.help)).collect();
+    let command = Command::new("tune")
+        .about("Finds the cheapest settings whose errors stay within bounds")
+        .after_help(format!(
+            "Starts from the preset exact and keeps every flag that is given. Varied are settings that keep the pixels \
+             or approximate them, never those of another picture. Errors are those of the 8-bit picture of the worst \
+             frame against --visibility full. Prints what was tried, the best for their time, the flags found, and \
+             all of it as JSON. Exit code 1 when nothing keeps the bounds.\n\n{}",
+            metrics.join("\n")
+        ))
+        .arg(
+            Arg::new("max-error")
+                .long("max-error")
+                .value_name("METRIC=VALUE")
+                .required(true)
+                .value_parser(Bound::parse)
+                .action(ArgAction::Append)
+                .help("The greatest error, the least value for psnr and ssim; of several all hold"),
+        )
+        .arg(switch("json", "One JSON object and nothing else"));
+    with_shared(command)
 }
 
 fn info() -> Command {

@@ -13,6 +13,7 @@ mod progress;
 mod render;
 mod stage;
 mod stdout;
+mod tune;
 mod values;
 mod view;
 
@@ -29,6 +30,7 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     match asked.subcommand() {
         Some(("render", asked)) => render::run(asked),
         Some(("bench", asked)) => bench::run(asked),
+        Some(("tune", asked)) => tune::run(asked),
         Some(("info", asked)) => info::run(asked),
         Some(("compare", asked)) => compare::run(asked),
         _ => view::run(asked),

@@ -123,17 +123,11 @@ impl Reference {
     /// The run's own settings without what approximates.
     fn new(visibility: Visibility, stage: &Stage) -> Self {
         Self {
-            settings: exactly(visibility, &stage.settings),
+            settings: Settings { visibility, ..stage.settings.reference() },
             film: Film::new(stage.size.width, stage.size.height, Planes::default()),
             meter: MotionMeter::default(),
         }
     }
-}
-
-/// The same picture without approximations.
-fn exactly(visibility: Visibility, settings: &Settings) -> Settings {
-    let Settings { fill, sphere_cache, render_scale, min_weight, .. } = Settings::exact();
-    Settings { visibility, fill, sphere_cache, render_scale, min_weight, ..settings.clone() }
 }
 
 fn record_of(stage: &Stage, run: &Run, reference: Option<&Reference>) -> Record {

@@ -1,7 +1,7 @@
 //! How fast and how true: error metrics, difference pictures, timed runs and their records; benches.
 //!
 //! A bench goes `sweep` (what is measured) -> `bench` (measuring) -> `records` (on disk) -> `chart` and `page` (drawn
-//! from the records alone).
+//! from the records alone). `tune` searches for the cheapest settings that are good enough.
 //!
 //! Architecture invariant: nothing here changes a frame; it only calls [`render_frame`](crate::render::render_frame)
 //! and looks at what comes back.
@@ -24,6 +24,8 @@ pub mod sweep;
 pub mod system;
 pub mod table;
 pub mod thesis;
+pub mod tune;
+pub mod watch;
 
 pub use motion::MotionMeter;
 pub use record::Record;

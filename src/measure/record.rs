@@ -109,7 +109,7 @@ impl Record {
             frames: run.frames(),
             threads,
             simd,
-            settings: ROWS.iter().map(|row| (row.name.to_owned(), typed((row.get)(settings)))).collect(),
+            settings: settings_json(settings),
             load_ms,
             build_ms,
             frame_ms: run.frame_ms(),
@@ -125,6 +125,11 @@ impl Record {
             counts: SceneCounts::of(scene),
         }
     }
+}
+
+/// Every setting by its name, as it would be typed.
+pub(super) fn settings_json(settings: &Settings) -> Value {
+    ROWS.iter().map(|row| (row.name.to_owned(), typed((row.get)(settings)))).collect()
 }
 
 /// A setting's text as JSON: numbers as numbers, names as strings.

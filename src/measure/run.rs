@@ -22,13 +22,7 @@ pub fn timed_frame(
     scratch: &mut Scratch,
     film: &mut Film,
 ) -> bool {
-    let (wall, cpu) = (Instant::now(), ProcessTime::now());
-    let stats = render_frame(scene, camera, settings, scratch, film);
-    let (cpu, wall) = (cpu.elapsed(), wall.elapsed());
-    if stats.completed {
-        run.add(wall.as_secs_f64() * 1e3, cpu.as_secs_f64() * 1e3, &stats);
-    }
-    stats.completed
+    run.time(|| render_frame(scene, camera, settings, scratch, film))
 }
 
 /// The cost of a run of frames.
@@ -49,6 +43,17 @@ pub struct CpuTime {
 }
 
 impl Run {
+    /// Adds the frame that `render` makes, unless it was not completed; returns whether it was.
+    pub fn time(&mut self, render: impl FnOnce() -> FrameStats) -> bool {
+        let (wall, cpu) = (Instant::now(), ProcessTime::now());
+        let stats = render();
+        let (cpu, wall) = (cpu.elapsed(), wall.elapsed());
+        if stats.completed {
+            self.add(wall.as_secs_f64() * 1e3, cpu.as_secs_f64() * 1e3, &stats);
+        }
+        stats.completed
+    }
+
     /// Adds one frame.
     pub fn add(&mut self, frame_ms: f64, cpu_ms: f64, stats: &FrameStats) {
         self.frame_ms.push(frame_ms);

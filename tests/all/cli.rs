@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// A folder in which the program runs.
-struct Bench(Folder);
+pub(super) struct Bench(Folder);
 
 impl Bench {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self(Folder::new())
     }
 
@@ -28,19 +28,19 @@ impl Bench {
         command
     }
 
-    fn run(&self, line: &str) -> Output {
+    pub(super) fn run(&self, line: &str) -> Output {
         self.program(line).output().expect("the program starts")
     }
 
     /// Runs `line`, expects success, and returns standard output.
-    fn done(&self, line: &str) -> String {
+    pub(super) fn done(&self, line: &str) -> String {
         let output = self.run(line);
         assert_eq!(output.status.code(), Some(0), "{line}: {}", text(&output.stderr));
         text(&output.stdout)
     }
 
     /// Runs `line`, expects `code`, nothing on standard output and no new file, and returns what stderr says.
-    fn refused(&self, code: i32, line: &str) -> String {
+    pub(super) fn refused(&self, code: i32, line: &str) -> String {
         let before = self.names();
         let output = self.run(line);
         let said = text(&output.stderr);
@@ -54,7 +54,7 @@ impl Bench {
         said
     }
 
-    fn write(&self, name: &str, contents: impl AsRef<[u8]>) {
+    pub(super) fn write(&self, name: &str, contents: impl AsRef<[u8]>) {
         self.0.write(name, contents);
     }
 
@@ -62,7 +62,7 @@ impl Bench {
         fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    fn json(&self, line: &str) -> Value {
+    pub(super) fn json(&self, line: &str) -> Value {
         let out = self.done(line);
         serde_json::from_str(&out).unwrap_or_else(|error| panic!("{line}: {error}: {out}"))
     }
@@ -83,7 +83,7 @@ impl Bench {
     }
 }
 
-fn text(bytes: &[u8]) -> String {
+pub(super) fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 

@@ -29,3 +29,4 @@ mod subsampling;
 mod temporary;
 #[path = "../common/tracer/mod.rs"]
 mod tracer;
+mod tune;

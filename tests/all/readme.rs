@@ -104,10 +104,9 @@ fn long_flags(text: &str) -> BTreeSet<String> {
 #[test]
 fn every_flag_it_names_exists() {
     let mut known = long_flags("--release --example --locked");
-    for command in
-        [&["--help"][..], &["render", "--help"], &["bench", "--help"], &["info", "--help"], &["compare", "--help"]]
-    {
-        let output = Command::new(env!("CARGO_BIN_EXE_raywalk")).args(command).output().unwrap();
+    for command in ["", "render", "bench", "tune", "info", "compare"] {
+        let line = [command, "--help"].into_iter().filter(|word| !word.is_empty());
+        let output = Command::new(env!("CARGO_BIN_EXE_raywalk")).args(line).output().unwrap();
         known.extend(long_flags(&String::from_utf8_lossy(&output.stdout)));
     }
     let named = long_flags(&readme());

@@ -7,10 +7,14 @@ mod controls;
 mod figures;
 mod graph;
 pub mod theme;
+mod tuning;
+
+pub use tuning::{Tuning, usual_bound};
 
 use super::at_rest::SAMPLES;
 use super::history::History;
 use super::input::HELP;
+use crate::measure::tune::Bound;
 use crate::render::FrameStats;
 use crate::scene::Scene;
 use crate::settings::{PRESETS, Preset, Settings, row};
@@ -48,6 +52,8 @@ pub struct View<'a> {
     pub sensitivity: f64,
     /// Mouse forward looks down.
     pub invert_look: bool,
+    /// What is known of other settings.
+    pub tuning: Tuning<'a>,
 }
 
 /// What the picture is, against what the settings ask for.
@@ -125,6 +131,12 @@ pub enum Change {
     Sensitivity(f64),
     /// Whether mouse forward looks down.
     InvertLook(bool),
+    /// Have the next search keep this bound.
+    Bound(Bound),
+    /// Search for the cheapest settings that keep this bound.
+    Search(Bound),
+    /// End the search.
+    StopSearch,
     /// Open or close the panel.
     TogglePanel,
 }
@@ -144,6 +156,8 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
             let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(10.0).corner_radius(6.0);
             frame.show(ui, |ui| {
                 ui.set_max_width(WIDTH.min(available.width() - 4.0 * MARGIN).max(1.0));
+                // Without this an area that was small, its sections closed, would never grow again.
+                ui.set_max_height((available.height() - 4.0 * MARGIN).max(1.0));
                 status_line(ui, view, shown, &mut changes);
                 if shown.panel {
                     let height = available.bottom() - ui.cursor().top() - 3.0 * MARGIN;
@@ -162,6 +176,7 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
     ui.horizontal(|ui| {
         let is_refining = matches!(view.showing, Showing::Refined(samples) if samples < SAMPLES);
         let rate = match view.history.rate() {
+            _ if view.resting && view.tuning.is_measuring() => "measuring".to_owned(),
             _ if view.resting && is_refining => "refining".to_owned(),
             _ if view.resting => "idle".to_owned(),
             Some(rate) if rate < 9.95 => format!("{rate:.1} fps"),
@@ -191,6 +206,7 @@ fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     });
     section(ui, "Last frame", true, |ui| figures::show(ui, view.stats));
     section(ui, "View", true, |ui| controls::view(ui, view, changes));
+    section(ui, "Time against error", false, |ui| tuning::show(ui, view, changes));
     section(ui, "Scene", false, |ui| scene(ui, view.scene));
     section(ui, "Keys", false, keys);
 }

@@ -1,10 +1,10 @@
 //! How wrong a method's picture is.
 
 use crate::measure::difference::difference_picture;
-use crate::measure::metric::{METRICS, Pair, Score};
+use crate::measure::metric::{METRICS, Pair, Score, metric};
 use crate::measure::pops::{Pops, Seen, is_visibly_wrong};
 use crate::measure::records::{FrameError, WRONG_SHARE};
-use crate::picture::{EightBit, Encoding, Picture};
+use crate::picture::EightBit;
 use std::collections::BTreeMap;
 
 /// Errors of `picture` by every metric.
@@ -18,7 +18,7 @@ pub fn by_metrics(reference: &EightBit, picture: &EightBit) -> BTreeMap<String, 
     };
     let scores = METRICS.iter().map(|metric| {
         let score = pair.as_ref().map_or(Score::Undefined, |pair| (metric.score)(pair));
-        (metric.name.to_owned(), number(score))
+        (metric.name.to_owned(), score.number())
     });
     scores.collect()
 }
@@ -74,9 +74,9 @@ impl Frames {
         // Equal pictures need no metric to say so.
         let pair = if reference == picture { None } else { pair(reference, picture) };
         let score = |name: &str| {
-            let metric = METRICS.iter().find(|metric| metric.name == name);
+            let metric = metric(name);
             let score = pair.as_ref().zip(metric).map(|(pair, metric)| (metric.score)(pair));
-            score.and_then(number).unwrap_or_default()
+            score.and_then(Score::number).unwrap_or_default()
         };
         let (rmse, p999_abs) = (score("rmse"), score("p999_abs"));
         FrameError { rmse, p999_abs, pixels_off: pixels_off as f64, pops: pops as f64 }
@@ -90,21 +90,7 @@ fn visibly_wrong<'a>(reference: &'a EightBit, picture: &'a EightBit) -> impl Ite
 
 /// `None` for pictures of different sizes, which no bench makes.
 fn pair(a: &EightBit, b: &EightBit) -> Option<Pair> {
-    let picture = |picture: &EightBit| Picture {
-        width: picture.width,
-        height: picture.height,
-        pixels: picture.rgb.as_chunks::<3>().0.iter().map(|rgb| rgb.map(|v| f32::from(v) / 255.0)).collect(),
-        encoding: Encoding::Srgb,
-    };
-    Pair::new(picture(a), picture(b), Encoding::Srgb).ok()
-}
-
-fn number(score: Score) -> Option<f64> {
-    match score {
-        Score::Count(count) => Some(count as f64),
-        Score::Number(number) => Some(number),
-        Score::Undefined => None,
-    }
+    Pair::of_eight_bit(a, b).ok()
 }
 
 #[cfg(test)]

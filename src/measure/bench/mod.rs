@@ -3,10 +3,10 @@
 mod comparison;
 mod judge;
 mod walk;
-mod watch;
 
 use super::records::{Key, Records, RecordsError, Row};
 use super::sweep::{Job, Method, View};
+use super::watch::Watch;
 use crate::picture::PictureError;
 use crate::render::{CancelToken, Film, Planes, Scratch, render_frame};
 use crate::scene::{Camera, Scene};
@@ -14,7 +14,6 @@ use crate::settings::Settings;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use watch::Watch;
 
 /// Why a bench ended early. The text is one line.
 #[derive(Debug, thiserror::Error)]

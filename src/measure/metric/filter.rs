@@ -21,13 +21,23 @@ impl Plane {
     pub fn filtered(&self, horizontal: &[f32], vertical: &[f32]) -> Self {
         let rows = self.map_rows(|y, row| {
             let source = &self.values[y * self.width..][..self.width];
-            for (x, out) in row.iter_mut().enumerate() {
-                *out = taps(horizontal, x, self.width, |i| source[i]);
+            let radius = horizontal.len() / 2;
+            let inner = radius.min(self.width)..self.width.saturating_sub(radius).max(radius.min(self.width));
+            for x in (0..inner.start).chain(inner.end..self.width) {
+                row[x] = taps(horizontal, x, self.width, |i| source[i]);
+            }
+            // Weight by weight: loops over neighbours become vector code.
+            for (tap, weight) in horizontal.iter().enumerate() {
+                let sources = source.get(tap..).unwrap_or_default();
+                row[inner.clone()].iter_mut().zip(sources).for_each(|(sum, value)| *sum += weight * value);
             }
         });
         rows.map_rows(|y, row| {
-            for (x, out) in row.iter_mut().enumerate() {
-                *out = taps(vertical, y, self.height, |i| rows.values[i * self.width + x]);
+            let radius = vertical.len() / 2;
+            for (tap, weight) in vertical.iter().enumerate() {
+                let line = (y + tap).saturating_sub(radius).min(self.height - 1);
+                let source = &rows.values[line * self.width..][..self.width];
+                row.iter_mut().zip(source).for_each(|(sum, value)| *sum += weight * value);
             }
         })
     }

@@ -8,6 +8,7 @@ use super::filter::{Plane, gaussian, normalized};
 use super::{Pair, Score};
 use crate::picture::srgb_decode;
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
@@ -28,20 +29,21 @@ pub(super) fn flip(pair: &Pair) -> Score {
         return Score::Undefined;
     }
     let (width, height) = (pair.width(), pair.height());
-    let a = Channels::new(width, height, pair.pixels().map(|(a, _)| opponent_of_srgb(a)));
-    let b = Channels::new(width, height, pair.pixels().map(|(_, b)| opponent_of_srgb(b)));
+    let a = Channels::new(width, height, pair.pixels().map(|(a, _)| a));
+    let b = Channels::new(width, height, pair.pixels().map(|(_, b)| b));
     let (features_a, features_b) = (Features::of(&a.achromatic), Features::of(&b.achromatic));
     let (seen_a, seen_b) = (a.as_seen(), b.as_seen());
     let greatest = greatest_color_difference();
 
-    let sum: f64 = (0..width * height)
-        .map(|i| {
-            let color = compress(hyab(hunt_lab(seen_a.at(i)), hunt_lab(seen_b.at(i))).powf(QC), greatest);
-            let feature = features_a.difference(&features_b, i);
-            color.powf(1.0 - feature)
-        })
-        .sum();
-    Score::Number(sum / (width * height) as f64)
+    let error = |i: usize| {
+        let color = compress(hyab(hunt_lab(seen_a.at(i)), hunt_lab(seen_b.at(i))).powf(QC), greatest);
+        let feature = features_a.difference(&features_b, i);
+        color.powf(1.0 - feature)
+    };
+    // Row by row, so that the sum is the same whichever threads make it.
+    let rows = (0..height).into_par_iter().map(|y| (y * width..(y + 1) * width).map(error).sum());
+    let rows: Vec<f64> = rows.collect();
+    Score::Number(rows.iter().sum::<f64>() / (width * height) as f64)
 }
 
 /// A picture in the opponent space YyCxCz.
@@ -52,13 +54,10 @@ struct Channels {
 }
 
 impl Channels {
-    fn new(width: usize, height: usize, pixels: impl Iterator<Item = DVec3>) -> Self {
-        let mut values: [Vec<f32>; 3] = std::array::from_fn(|_| Vec::with_capacity(width * height));
-        for pixel in pixels {
-            for (channel, value) in values.iter_mut().zip(pixel.to_array()) {
-                channel.push(value as f32);
-            }
-        }
+    fn new(width: usize, height: usize, srgb: impl Iterator<Item = [f32; 3]>) -> Self {
+        let srgb: Vec<[f32; 3]> = srgb.collect();
+        let pixels: Vec<DVec3> = srgb.into_par_iter().map(opponent_of_srgb).collect();
+        let values: [Vec<f32>; 3] = std::array::from_fn(|i| pixels.iter().map(|pixel| pixel[i] as f32).collect());
         let [achromatic, red_green, blue_yellow] = values.map(|values| Plane { width, height, values });
         Self { achromatic, red_green, blue_yellow }
     }

@@ -13,7 +13,7 @@ mod ssim;
 
 pub use pixels_off::SEEN_STEPS;
 
-use crate::picture::{Encoding, Picture};
+use crate::picture::{EightBit, Encoding, Picture};
 use serde::Serialize;
 use std::fmt;
 
@@ -45,6 +45,20 @@ impl Pair {
             return Err(SizesDiffer { a: (a.width, a.height), b: (b.width, b.height) });
         }
         Ok(Self { a: a.encoded_as(encoding), b: b.encoded_as(encoding) })
+    }
+
+    /// What a display shows of two pictures of 8 bits.
+    ///
+    /// # Errors
+    /// [`SizesDiffer`].
+    pub fn of_eight_bit(a: &EightBit, b: &EightBit) -> Result<Self, SizesDiffer> {
+        let picture = |picture: &EightBit| Picture {
+            width: picture.width,
+            height: picture.height,
+            pixels: picture.rgb.as_chunks::<3>().0.iter().map(|rgb| rgb.map(|v| f32::from(v) / 255.0)).collect(),
+            encoding: Encoding::Srgb,
+        };
+        Self::new(picture(a), picture(b), Encoding::Srgb)
     }
 
     /// Width in pixels.
@@ -91,6 +105,17 @@ pub enum Score {
     Undefined,
 }
 
+impl Score {
+    /// The value, if there is one.
+    pub fn number(self) -> Option<f64> {
+        match self {
+            Self::Count(count) => Some(count as f64),
+            Self::Number(number) => Some(number),
+            Self::Undefined => None,
+        }
+    }
+}
+
 impl fmt::Display for Score {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -107,8 +132,22 @@ pub struct Metric {
     pub name: &'static str,
     /// One line of help: unit, range, which way is better.
     pub help: &'static str,
+    /// What it says of equal pictures, the best there is: infinity for psnr.
+    pub best: f64,
     /// Computes it.
     pub score: fn(&Pair) -> Score,
+}
+
+impl Metric {
+    /// Whether higher values are better.
+    pub fn is_higher_better(&self) -> bool {
+        self.best > 0.0
+    }
+}
+
+/// Looks a metric up by its name.
+pub fn metric(name: &str) -> Option<&'static Metric> {
+    METRICS.iter().find(|metric| metric.name == name)
 }
 
 /// Every metric, in the order in which they are printed.
@@ -116,16 +155,28 @@ pub const METRICS: &[Metric] = &[
     Metric {
         name: "psnr",
         help: "dB against a peak of 1, higher is better; none for equal pictures",
+        best: f64::INFINITY,
         score: psnr::psnr,
     },
-    Metric { name: "rmse", help: "root mean square difference of all channels, 0 to 1", score: rmse::rmse },
-    Metric { name: "max_abs", help: "greatest difference of any channel, 0 to 1", score: max_abs::max_abs },
-    Metric { name: "p999_abs", help: "99.9th percentile of all channels' differences", score: p999_abs::p999_abs },
-    Metric { name: "ssim", help: "structural similarity of luma, 1 for equal pictures", score: ssim::ssim },
-    Metric { name: "flip", help: "mean LDR-FLIP at 67 pixels a degree, 0 to 1; none with --hdr", score: flip::flip },
+    Metric { name: "rmse", help: "root mean square difference of all channels, 0 to 1", best: 0.0, score: rmse::rmse },
+    Metric { name: "max_abs", help: "greatest difference of any channel, 0 to 1", best: 0.0, score: max_abs::max_abs },
+    Metric {
+        name: "p999_abs",
+        help: "99.9th percentile of all channels' differences",
+        best: 0.0,
+        score: p999_abs::p999_abs,
+    },
+    Metric { name: "ssim", help: "structural similarity of luma, 1 for equal pictures", best: 1.0, score: ssim::ssim },
+    Metric {
+        name: "flip",
+        help: "mean LDR-FLIP at 67 pixels a degree, 0 to 1; none with --hdr",
+        best: 0.0,
+        score: flip::flip,
+    },
     Metric {
         name: "pixels_off",
         help: "pixels with any channel off by more than 2/255",
+        best: 0.0,
         score: pixels_off::pixels_off,
     },
 ];

@@ -1,4 +1,4 @@
-//! Stops a frame that takes too long, or when the bench is asked to stop.
+//! Stops a frame that takes too long, or when measuring is asked to stop.
 
 use crate::render::CancelToken;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 const PERIOD: Duration = Duration::from_millis(10);
 
 /// A thread that watches the frame in work.
-pub(super) struct Watch {
-    /// Asks the bench to stop.
+pub struct Watch {
+    /// Asks measuring to stop.
     pub stop: CancelToken,
     frame: CancelToken,
     deadline: Arc<Mutex<Option<Instant>>>,
@@ -20,9 +20,14 @@ pub(super) struct Watch {
 }
 
 impl Watch {
+    /// Watches frames until `stop` is cancelled.
     pub fn new(stop: CancelToken) -> Self {
-        let (frame, deadline, ended) =
-            (CancelToken::default(), Arc::<Mutex<Option<Instant>>>::default(), Arc::default());
+        Self::over(stop, CancelToken::default())
+    }
+
+    /// The same, where `frame` is what stops a frame.
+    pub fn over(stop: CancelToken, frame: CancelToken) -> Self {
+        let (deadline, ended) = (Arc::<Mutex<Option<Instant>>>::default(), Arc::default());
         let thread = {
             let (stop, frame, deadline) = (stop.clone(), frame.clone(), Arc::clone(&deadline));
             let ended: Arc<AtomicBool> = Arc::clone(&ended);
