@@ -2,7 +2,7 @@
 //! and the table of what each method gains and loses.
 //!
 //! `cargo run --release --example readme` takes some minutes, and goes on where it was stopped. It writes
-//! `scenes/methods.json`, pictures in `scenes/pictures`, and the lines between the two marks in README.md.
+//! `scenes/pictures/methods.json`, pictures in `scenes/pictures`, and the lines between the two marks in README.md.
 
 use anyhow::{Context, ensure};
 use raywalk::measure::bench::{Bench, Listener};
@@ -49,7 +49,7 @@ fn main() -> anyhow::Result<()> {
     bench.run(&jobs)?;
 
     let summary = Summary::of(&bench.records).context("nothing was measured")?;
-    fs::write("scenes/methods.json", serde_json::to_string_pretty(&summary)? + "\n")?;
+    fs::write("scenes/pictures/methods.json", serde_json::to_string_pretty(&summary)? + "\n")?;
     for chart in chart::of(&bench.records) {
         if let Some((_, file)) = CHARTS.iter().find(|(beginning, _)| chart.name.starts_with(beginning)) {
             fs::write(format!("scenes/pictures/{file}.svg"), chart.document())?;

@@ -61,6 +61,7 @@ pub(super) fn bmp(picture: &EightBit, _: WriteOptions, mut sink: &mut dyn Sink) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::SplitMix64;
     use std::io::Cursor;
 
     fn gradient() -> EightBit {
@@ -88,7 +89,8 @@ mod tests {
     fn few_bytes_are_a_png_of_plain_pictures_and_a_jpeg_of_noise() {
         let plain = EightBit { width: 32, height: 32, rgb: vec![70; 3 * 32 * 32] };
         assert_eq!(plain.compact().expect("small sides").0, "image/png");
-        let noise = (0..3 * 32 * 32_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+        let mut random = SplitMix64(1);
+        let noise = (0..3 * 32 * 32).map(|_| random.within(0.0, 256.0) as u8).collect();
         let (kind, bytes) = EightBit { width: 32, height: 32, rgb: noise }.compact().expect("small sides");
         assert_eq!(kind, "image/jpeg");
         assert!(image::load_from_memory_with_format(&bytes, image::ImageFormat::Jpeg).is_ok());

@@ -79,7 +79,7 @@ fn its_tables_are_the_programs_own_lists() {
 
 #[test]
 fn what_methods_gain_and_lose_is_what_was_measured() {
-    let measured = fs::read_to_string(root().join("scenes/methods.json")).unwrap();
+    let measured = fs::read_to_string(root().join("scenes/pictures/methods.json")).unwrap();
     let summary: Summary = serde_json::from_str(&measured).unwrap();
     let readme = readme();
     let (begin, end) = Summary::MARKS;
