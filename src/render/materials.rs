@@ -7,6 +7,7 @@ use super::tables::{FlatMaterial, Row};
 use crate::geometry::PrimitiveIndex;
 use crate::math::V3;
 use crate::scene::object::Mapping;
+use crate::scene::texture::Coordinates;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::Vec2;
@@ -211,9 +212,10 @@ fn look_up_object<S: Simd>(
     let point = &surfaces.point;
     let coordinates = object.texture_coordinates(simd, point.position, point.normal, sides, own);
     let material = &frame.tables.materials[object.material as usize];
+    let coordinates = Coordinates::<S> { uv: coordinates, spread2: None };
     for (texture, into) in [material.color_texture, material.emission_texture].into_iter().zip(&mut found) {
         if let Some(texture) = texture {
-            *into = frame.scene.textures[texture as usize].sample(simd, coordinates, members);
+            *into = *into * frame.scene.textures[texture as usize].sample(simd, &coordinates, members).color;
         }
     }
     found

@@ -69,12 +69,9 @@ const MIRROR_ROUGHNESS: f32 = 0.1;
 
 impl FlatMaterial {
     fn new(material: &Material) -> Self {
-        let constant = |source: ColorSource| match source {
-            ColorSource::Constant(color) => (color, None),
-            ColorSource::Texture(texture) => (Vec3::ZERO, Some(texture)),
-        };
-        let (color, color_texture) = constant(material.color);
-        let (emission, emission_texture) = constant(material.emission);
+        let parts = |source: ColorSource| (source.factor, source.texture.map(|lookup| lookup.texture));
+        let (color, color_texture) = parts(material.color);
+        let (emission, emission_texture) = parts(material.emission);
         let mut rows = [0.0; ROWS];
         let mut put = |row: Row, values: &[f32]| {
             rows[row as usize..row as usize + values.len()].copy_from_slice(values);
@@ -106,7 +103,7 @@ impl FlatMaterial {
         let mirrors = metallic_roughness || material.reflectivity != Vec3::ZERO;
         Self {
             shiny: rows[Row::Specular as usize..][..3] != [0.0; 3],
-            emissive: emission_texture.is_some() || emission != Vec3::ZERO,
+            emissive: emission != Vec3::ZERO,
             transparent: material.is_transparent(),
             fresnel: material.fresnel,
             rows,
