@@ -28,7 +28,7 @@ pub fn exp<S: Simd, F: Lanes<S>>(x: F) -> F {
 ///
 /// The mantissa is brought into [√½, √2), where ln(m) = 2 artanh((m-1)/(m+1)) converges fast (Abramowitz and Stegun 4.1.27).
 #[inline(always)]
-fn log2<S: Simd, F: Lanes<S>>(x: F) -> F {
+pub fn log2<S: Simd, F: Lanes<S>>(x: F) -> F {
     let simd = x.token();
     let bits = x.to_bits();
     // 0x3f3504f3 is √½: adding what is missing to 1.0 makes the exponent round to the nearest power.

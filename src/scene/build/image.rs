@@ -1,13 +1,15 @@
-//! Image files: decoded once each, within a budget for all of them together.
+//! Images: decoded once each, side by side, within a budget for all of them together.
 
-use crate::scene::desc::NameRef;
 use crate::scene::desc::map::shortened;
-use crate::scene::desc::problem::{Outcome, Problem};
+use crate::scene::desc::problem::{Outcome, Problem, Warnings};
+use crate::scene::desc::{ImageDesc, ImageSource};
 use crate::scene::files::{FileError, Files};
 use crate::scene::limits::{Limits, exceeded};
+use crate::scene::material::Encoding;
 use crate::scene::texels::Texels;
-use crate::scene::texture::ImageTexture;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
+use rayon::prelude::*;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -31,10 +33,27 @@ enum DecodeError {
     Size,
 }
 
-/// The images of a scene by file, and how many bytes more they may take.
+/// What an image is known by: images of one source and encoding share their texels.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+enum Key {
+    File(PathBuf, Encoding),
+    /// By the address of the bytes, which stay where they are until the scene is built.
+    Embedded(usize, Encoding),
+}
+
+/// An image that waits to be decoded.
+struct Waiting {
+    key: Key,
+    bytes: Cow<'static, [u8]>,
+    encoding: Encoding,
+}
+
+/// The images of a scene by where they come from, and how many bytes more they may take.
 pub struct ImageStore {
     files: Files,
-    decoded: HashMap<PathBuf, Arc<Texels>>,
+    decoded: HashMap<Key, Result<Arc<Texels>, String>>,
+    /// Keeps the addresses in `decoded` from being used again.
+    embedded: Vec<Arc<[u8]>>,
     bytes_left: u64,
     limits: Limits,
 }
@@ -42,61 +61,128 @@ pub struct ImageStore {
 impl ImageStore {
     /// No images yet; they will be read from `files`.
     pub fn new(files: Files, limits: &Limits) -> Self {
-        Self { files, decoded: HashMap::new(), bytes_left: limits.texture_bytes, limits: limits.clone() }
+        let (decoded, embedded) = (HashMap::new(), Vec::new());
+        Self { files, decoded, embedded, bytes_left: limits.texture_bytes, limits: limits.clone() }
     }
 
-    /// The texture of an image file, repeating every `size` units.
-    pub fn load(&mut self, file: &NameRef, size: f32) -> Outcome<ImageTexture> {
-        let name = shortened(&file.name);
-        let unreadable = |error: FileError| Problem::new(file.at, format!("cannot read image \"{name}\": {error}"));
-        let path = self.files.locate(&file.name).map_err(unreadable)?;
-        let texels = match self.decoded.get(&path) {
-            Some(texels) => Arc::clone(texels),
-            None => {
-                let bytes = self.files.read(&path).map_err(unreadable)?;
-                let undecodable = |error| {
-                    Problem::new(
-                        file.at,
-                        format!("cannot decode image \"{name}\" (PNG, JPEG and BMP are known): {error}"),
-                    )
-                };
-                let texels = Arc::new(self.decode(&bytes).map_err(undecodable)?);
-                self.bytes_left = self.bytes_left.saturating_sub(decoded_bytes(texels.width(), texels.height()));
-                self.decoded.insert(path, Arc::clone(&texels));
-                texels
+    /// The texels of images, in the same order.
+    ///
+    /// # Errors
+    /// An image that cannot be read or decoded and may not be missing; one that may be is a warning, and a placeholder.
+    pub fn load(&mut self, images: &[(ImageDesc, Encoding)], warnings: &mut Warnings) -> Outcome<Vec<Arc<Texels>>> {
+        let mut waiting = Vec::new();
+        let mut keys = Vec::with_capacity(images.len());
+        for (image, encoding) in images {
+            keys.push(self.read(image, *encoding, &mut waiting));
+        }
+        self.decode(waiting);
+        images.iter().zip(keys).map(|((image, _), key)| self.finished(image, key, warnings)).collect()
+    }
+
+    /// Reads an image that is not known yet, for it to be decoded.
+    fn read(&mut self, image: &ImageDesc, encoding: Encoding, waiting: &mut Vec<Waiting>) -> Result<Key, FileError> {
+        let (key, bytes) = match &image.source {
+            ImageSource::File(name) => {
+                let path = self.files.locate(&name.name)?;
+                let key = Key::File(path.clone(), encoding);
+                if self.is_known(&key, waiting) {
+                    return Ok(key);
+                }
+                (key, self.files.read(&path)?)
+            }
+            ImageSource::Embedded { bytes, .. } => {
+                let key = Key::Embedded(bytes.as_ptr() as usize, encoding);
+                if self.is_known(&key, waiting) {
+                    return Ok(key);
+                }
+                self.embedded.push(Arc::clone(bytes));
+                (key, Cow::Owned(bytes.to_vec()))
             }
         };
-        Ok(ImageTexture { texels, size })
+        waiting.push(Waiting { key: key.clone(), bytes, encoding });
+        Ok(key)
     }
 
-    fn decode(&self, bytes: &[u8]) -> Result<Texels, DecodeError> {
-        // The decoders are meant never to panic on damaged files; should one do so, only its image is lost.
-        catch_unwind(AssertUnwindSafe(|| self.decode_unguarded(bytes))).unwrap_or(Err(DecodeError::Panicked))
+    fn is_known(&self, key: &Key, waiting: &[Waiting]) -> bool {
+        self.decoded.contains_key(key) || waiting.iter().any(|waiting| waiting.key == *key)
     }
 
-    fn decode_unguarded(&self, bytes: &[u8]) -> Result<Texels, DecodeError> {
-        let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(ImageError::IoError)?;
-        let mut decoder = reader.into_decoder()?;
-        let (width, height) = decoder.dimensions();
-        if u64::from(width.max(height)) > self.limits.texture_edge {
-            return Err(DecodeError::Edge(self.limits.texture_edge));
+    /// Decodes images side by side. What they may take is shared out beforehand, by what their headers say.
+    fn decode(&mut self, waiting: Vec<Waiting>) {
+        let budgets: Vec<Result<u64, DecodeError>> = waiting
+            .iter()
+            .map(|image| {
+                let needed = guarded(|| needed_bytes(&image.bytes, &self.limits))?;
+                let left = self.bytes_left.checked_sub(needed);
+                self.bytes_left = left.ok_or(DecodeError::Budget(self.limits.texture_bytes))?;
+                Ok(needed)
+            })
+            .collect();
+        let decode = |(image, budget): (Waiting, Result<u64, DecodeError>)| {
+            let texels = budget.and_then(|budget| guarded(|| decode(&image.bytes, image.encoding, budget)));
+            (image.key, texels.map(Arc::new).map_err(|error| error.to_string()))
+        };
+        let decoded: Vec<_> = waiting.into_par_iter().zip(budgets).map(decode).collect();
+        self.decoded.extend(decoded);
+    }
+
+    /// The texels of an image that was decoded.
+    fn finished(
+        &self,
+        image: &ImageDesc,
+        key: Result<Key, FileError>,
+        warnings: &mut Warnings,
+    ) -> Outcome<Arc<Texels>> {
+        let (ImageSource::File(name) | ImageSource::Embedded { name, .. }) = &image.source;
+        let shown = shortened(&name.name);
+        let problem = match key {
+            Err(error) => format!("cannot read image \"{shown}\": {error}"),
+            Ok(key) => match &self.decoded[&key] {
+                Ok(texels) => return Ok(Arc::clone(texels)),
+                Err(error) => format!("cannot decode image \"{shown}\" (PNG, JPEG and BMP are known): {error}"),
+            },
+        };
+        if !image.optional {
+            return Err(Problem::new(name.at, problem));
         }
-        if width == 0 || height == 0 {
-            return Err(DecodeError::Empty);
-        }
-        if decoder.total_bytes().max(decoded_bytes(width, height)) > self.bytes_left {
-            return Err(DecodeError::Budget(self.limits.texture_bytes));
-        }
-        let mut limits = image::Limits::no_limits();
-        limits.max_alloc = Some(self.bytes_left);
-        decoder.set_limits(limits)?;
-        // Alpha is left out; 16-bit channels are reduced to 8.
-        let pixels = DynamicImage::from_decoder(decoder)?.into_rgb8().into_raw();
-        Texels::new(width, height, pixels.as_chunks().0).ok_or(DecodeError::Size)
+        warnings.push(name.at, format!("{problem}; a placeholder is shown"));
+        Texels::placeholder().map(Arc::new).ok_or_else(|| Problem::new(name.at, "no placeholder"))
     }
 }
 
-/// Bytes of a decoded picture, as the budget counts them.
-fn decoded_bytes(width: u32, height: u32) -> u64 {
-    u64::from(width) * u64::from(height) * 3
+/// The decoders are meant never to panic on damaged files; should one do so, only its image is lost.
+fn guarded<T>(decode: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, DecodeError> {
+    catch_unwind(AssertUnwindSafe(decode)).unwrap_or(Err(DecodeError::Panicked))
+}
+
+/// A decoder that has read an image's header.
+fn open(bytes: &[u8]) -> Result<impl ImageDecoder, DecodeError> {
+    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(ImageError::IoError)?;
+    Ok(reader.into_decoder()?)
+}
+
+/// The most memory that decoding an image takes, by its header.
+fn needed_bytes(bytes: &[u8], limits: &Limits) -> Result<u64, DecodeError> {
+    let decoder = open(bytes)?;
+    let (width, height) = decoder.dimensions();
+    if u64::from(width.max(height)) > limits.texture_edge {
+        return Err(DecodeError::Edge(limits.texture_edge));
+    }
+    if width == 0 || height == 0 {
+        return Err(DecodeError::Empty);
+    }
+    // Four bytes a texel, and a third more for the smaller sizes.
+    let texels = (u64::from(width) * u64::from(height)).saturating_mul(16) / 3;
+    Ok(decoder.total_bytes().max(texels))
+}
+
+fn decode(bytes: &[u8], encoding: Encoding, budget: u64) -> Result<Texels, DecodeError> {
+    let mut decoder = open(bytes)?;
+    let mut limits = image::Limits::no_limits();
+    limits.max_alloc = Some(budget);
+    decoder.set_limits(limits)?;
+    let (width, height) = decoder.dimensions();
+    // 16-bit channels are reduced to 8.
+    let pixels = DynamicImage::from_decoder(decoder)?.into_rgba8().into_raw();
+    Texels::new(width, height, pixels.as_chunks().0, encoding, true).ok_or(DecodeError::Size)
 }

@@ -2,6 +2,7 @@
 
 mod bounds;
 mod framing;
+mod holes;
 mod image;
 mod mapping;
 mod object;
@@ -12,14 +13,16 @@ pub use bounds::finite_bounds;
 
 use super::desc::map::shortened;
 use super::desc::problem::{At, Outcome, Problem, Warnings};
-use super::desc::{ColorDesc, MaterialDesc, NameRef, SceneDesc, TextureDesc, TextureKind, hint};
+use super::desc::{ImageDesc, MaterialDesc, NameRef, SceneDesc, TextureDesc, TextureKind, hint};
 use super::error::Warning;
 use super::files::Files;
 use super::limits::Limits;
-use super::material::ColorSource;
+use super::material::Encoding;
+use super::texture::ImageTexture;
 use super::{Light, Material, NamedCamera, Object, RenderDefaults, Scene, Texture};
 use crate::geometry::{Geometry, Part};
 use glam::Vec3;
+use holes::HoleMaps;
 use image::ImageStore;
 use placement::Placement;
 use std::collections::HashMap;
@@ -34,6 +37,7 @@ pub struct SceneBuilder {
     name: String,
     limits: Limits,
     images: ImageStore,
+    holes: HoleMaps,
     parts: Vec<Part>,
     objects: Vec<Object>,
     materials: Vec<Material>,
@@ -56,6 +60,7 @@ impl SceneBuilder {
             name: name.to_owned(),
             images: ImageStore::new(files, &limits),
             limits,
+            holes: HoleMaps::default(),
             parts: Vec::new(),
             objects: Vec::new(),
             materials: Vec::new(),
@@ -87,31 +92,37 @@ impl SceneBuilder {
         self.render = scene.render;
         self.cameras.extend(scene.cameras);
         self.lights.extend(scene.lights);
-        let textures = self.add_textures(scene.textures)?;
-        let materials = self.add_materials(scene.materials, &textures)?;
+        let materials = self.add_materials(scene.materials, &scene.textures, warnings)?;
         self.add_objects(&scene.objects, &Placement::WORLD, &materials, warnings)
     }
 
-    fn add_textures(&mut self, textures: Vec<TextureDesc>) -> Outcome<Names> {
+    /// Adds materials and the textures that they name; an image is read as colours or as data, as they use it.
+    fn add_materials(
+        &mut self,
+        materials: Vec<MaterialDesc>,
+        textures: &[TextureDesc],
+        warnings: &mut Warnings,
+    ) -> Outcome<Names> {
+        let mut uses = TextureUses::new(textures, self.textures.len());
         let mut names = Names::new();
-        for TextureDesc { name, kind, size } in textures {
-            let texture = match kind {
-                TextureKind::Checker(colors) => Texture::Checker { colors, size },
-                TextureKind::Image(file) => Texture::Image(self.images.load(&file, size)?),
-            };
-            names.insert(name.name, index(self.textures.len(), name.at, "textures")?);
-            self.textures.push(texture);
-        }
-        Ok(names)
-    }
-
-    fn add_materials(&mut self, materials: Vec<MaterialDesc>, textures: &Names) -> Outcome<Names> {
-        let mut names = Names::new();
-        for MaterialDesc { material, color, emission } in materials {
+        for material in materials {
             names.insert(material.name.clone(), index(self.materials.len(), At(0), "materials")?);
-            let color = source(color, textures)?;
-            let emission = source(emission, textures)?;
-            self.materials.push(Material { color, emission, ..material });
+            self.materials.push(material.try_map(|name, encoding| uses.index(&name, encoding))?);
+        }
+        uses.add_unused()?;
+        let images: Vec<(ImageDesc, Encoding)> =
+            uses.images().map(|(image, encoding)| (image.clone(), encoding)).collect();
+        let mut texels = self.images.load(&images, warnings)?.into_iter();
+        for &(place, _) in &uses.used {
+            let TextureDesc { kind, size, .. } = &textures[place];
+            match kind {
+                TextureKind::Checker(colors) => self.textures.push(Texture::Checker { colors: *colors, size: *size }),
+                TextureKind::Image(image) => self.textures.extend(
+                    texels
+                        .next()
+                        .map(|texels| Texture::Image(ImageTexture { texels, sampler: image.sampler, size: *size })),
+                ),
+            }
         }
         Ok(names)
     }
@@ -148,7 +159,8 @@ impl SceneBuilder {
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
         }
         let start = Instant::now();
-        let geometry = Geometry::build(self.parts);
+        let mut geometry = Geometry::build(self.parts);
+        geometry.hole_maps = self.holes.maps;
         let build_ms = start.elapsed().as_secs_f64() * 1e3;
         Scene {
             name: self.name,
@@ -167,10 +179,57 @@ impl SceneBuilder {
     }
 }
 
-fn source(color: ColorDesc, textures: &Names) -> Outcome<ColorSource> {
-    match color {
-        ColorDesc::Constant(color) => Ok(ColorSource::Constant(color)),
-        ColorDesc::Texture(name) => resolve(&name, textures, "texture").map(ColorSource::Texture),
+/// Which textures of a description are used, and how.
+struct TextureUses<'a> {
+    textures: &'a [TextureDesc],
+    names: Names,
+    /// Place among the textures, and what its numbers are.
+    used: Vec<(usize, Encoding)>,
+    /// Index in the scene of each of these.
+    indices: HashMap<(usize, Encoding), u32>,
+    /// Textures that the scene has from elsewhere.
+    before: usize,
+}
+
+impl<'a> TextureUses<'a> {
+    fn new(textures: &'a [TextureDesc], before: usize) -> Self {
+        let names = (0..).zip(textures).map(|(place, texture)| (texture.name.name.clone(), place)).collect();
+        Self { textures, names, used: Vec::new(), indices: HashMap::new(), before }
+    }
+
+    /// The index in the scene of a texture that is used so.
+    fn index(&mut self, name: &NameRef, encoding: Encoding) -> Outcome<u32> {
+        let place = resolve(name, &self.names, "texture")? as usize;
+        self.add(place, encoding)
+    }
+
+    fn add(&mut self, place: usize, encoding: Encoding) -> Outcome<u32> {
+        if let Some(&index) = self.indices.get(&(place, encoding)) {
+            return Ok(index);
+        }
+        let at = self.textures[place].name.at;
+        let index = index(self.before + self.used.len(), at, "textures")?;
+        self.used.push((place, encoding));
+        self.indices.insert((place, encoding), index);
+        Ok(index)
+    }
+
+    /// Adds those that nothing names: their files are to be there, too.
+    fn add_unused(&mut self) -> Outcome<()> {
+        for place in 0..self.textures.len() {
+            if !self.used.iter().any(|(used, _)| *used == place) {
+                self.add(place, Encoding::Color)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The images among those used, in their order.
+    fn images(&self) -> impl Iterator<Item = (&'a ImageDesc, Encoding)> {
+        self.used.iter().filter_map(|&(place, encoding)| match &self.textures[place].kind {
+            TextureKind::Image(image) => Some((image, encoding)),
+            TextureKind::Checker(_) => None,
+        })
     }
 }
 

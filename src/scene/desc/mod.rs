@@ -16,10 +16,10 @@ pub mod texture;
 pub mod transform;
 pub mod value;
 
-pub use material::{ColorDesc, MaterialDesc};
+pub use material::MaterialDesc;
 pub use object::{MeshDesc, ObjectDesc, ShapeDesc};
 pub use suggest::hint;
-pub use texture::{TextureDesc, TextureKind};
+pub use texture::{ImageDesc, ImageSource, TextureDesc, TextureKind};
 
 use super::limits::Limits;
 use super::{Light, NamedCamera, RenderDefaults};

@@ -5,7 +5,8 @@ use super::node::Node;
 use super::problem::{At, Outcome, Problem};
 use super::value::{array, boolean, direction, indices, not_negative, positive, rows, text, vector};
 use super::{Context, NameRef, hint, transform};
-use glam::{DAffine3, DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3, Vec2, Vec4};
+use std::sync::Arc;
 
 /// An object as the file gives it, in its own space.
 #[derive(Clone, Debug)]
@@ -59,7 +60,7 @@ pub enum ShapeDesc {
         edge_v: DVec3,
     },
     /// One triangle (`triangle`) or many (`mesh`).
-    Mesh(MeshDesc),
+    Mesh(Arc<MeshDesc>),
     Group {
         children: Vec<ObjectDesc>,
     },
@@ -76,6 +77,13 @@ pub struct MeshDesc {
     pub normals: Vec<DVec3>,
     /// Texture coordinates, one a vertex, or none at all.
     pub uvs: Vec<DVec2>,
+    /// Second texture coordinates, one a vertex, or none at all.
+    pub uvs1: Vec<Vec2>,
+    /// Linear colours with opacity, which multiply the material's, one a vertex, or none at all.
+    pub colors: Vec<Vec4>,
+    /// Unit directions along which u grows, and the sign of that along which v grows, as glTF has them; one a vertex, or
+    /// none at all.
+    pub tangents: Vec<Vec4>,
 }
 
 /// Reads a type's own keys.
@@ -198,7 +206,9 @@ fn rectangle<'t, N: Node<'t>>(map: &mut Map<'t, N>, _: &mut Context) -> Outcome<
 fn triangle<'t, N: Node<'t>>(map: &mut Map<'t, N>, _: &mut Context) -> Outcome<ShapeDesc> {
     let vertices: [DVec3; 3] = map.required("vertices", |node| array(node, vector))?;
     let (normals, uvs) = vertex_attributes(map, 3)?;
-    Ok(ShapeDesc::Mesh(MeshDesc { vertices: vertices.to_vec(), triangles: vec![[0, 1, 2]], normals, uvs }))
+    let mesh =
+        MeshDesc { vertices: vertices.to_vec(), triangles: vec![[0, 1, 2]], normals, uvs, ..MeshDesc::default() };
+    Ok(ShapeDesc::Mesh(Arc::new(mesh)))
 }
 
 /// `{ "type": "mesh", "vertices": [[0, 0, 0], ..], "triangles": [[0, 1, 2], ..], "normals": [], "uvs": [] }`
@@ -206,7 +216,7 @@ fn mesh<'t, N: Node<'t>>(map: &mut Map<'t, N>, _: &mut Context) -> Outcome<Shape
     let vertices: Vec<DVec3> = map.required("vertices", rows)?.into_iter().map(DVec3::from_array).collect();
     let triangles = map.required("triangles", |node| indices(node, vertices.len(), "vertices"))?;
     let (normals, uvs) = vertex_attributes(map, vertices.len())?;
-    Ok(ShapeDesc::Mesh(MeshDesc { vertices, triangles, normals, uvs }))
+    Ok(ShapeDesc::Mesh(Arc::new(MeshDesc { vertices, triangles, normals, uvs, ..MeshDesc::default() })))
 }
 
 fn vertex_attributes<'t, N: Node<'t>>(map: &mut Map<'t, N>, count: usize) -> Outcome<(Vec<DVec3>, Vec<DVec2>)> {

@@ -5,7 +5,9 @@ use super::node::Node;
 use super::problem::{At, Outcome, Problem};
 use super::value::{array, color, positive, text};
 use super::{Context, NameRef};
+use crate::scene::texture::Sampler;
 use glam::Vec3;
+use std::sync::Arc;
 
 /// A texture as the file gives it.
 #[derive(Clone, Debug)]
@@ -21,10 +23,35 @@ pub struct TextureDesc {
 /// What a texture shows.
 #[derive(Clone, Debug)]
 pub enum TextureKind {
-    /// An image file, relative to the scene's folder.
-    Image(NameRef),
+    /// An image.
+    Image(ImageDesc),
     /// Squares of two linear colours.
     Checker([Vec3; 2]),
+}
+
+/// An image as the file gives it.
+#[derive(Clone, Debug)]
+pub struct ImageDesc {
+    /// Where its bytes are.
+    pub source: ImageSource,
+    /// How it is looked up.
+    pub sampler: Sampler,
+    /// A file that is missing or damaged becomes a placeholder and a warning rather than an error.
+    pub optional: bool,
+}
+
+/// Where the bytes of an image are.
+#[derive(Clone, Debug)]
+pub enum ImageSource {
+    /// In a file, relative to the scene's folder.
+    File(NameRef),
+    /// Within the scene's own file.
+    Embedded {
+        /// Encoded as in an image file.
+        bytes: Arc<[u8]>,
+        /// What messages call it.
+        name: NameRef,
+    },
 }
 
 /// Reads a texture.
@@ -34,7 +61,10 @@ pub fn read<'t>(node: impl Node<'t>, name: String, at: At, context: &mut Context
     let checker = map.optional("checker", |node| array(node, color))?;
     let size = map.or("size", 1.0, positive)? as f32;
     let kind = match (image, checker) {
-        (Some(image), None) => TextureKind::Image(image),
+        (Some(file), None) => {
+            let (source, sampler) = (ImageSource::File(file), Sampler::default());
+            TextureKind::Image(ImageDesc { source, sampler, optional: false })
+        }
         (None, Some(colors)) => TextureKind::Checker(colors),
         _ => return Err(Problem::new(map.at(), "a texture needs either an image or a checker")),
     };
