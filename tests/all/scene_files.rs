@@ -48,7 +48,7 @@ fn an_image_named_twice_is_decoded_once() {
     let text = r#"{ "version": 1, "textures": { "a": { "image": "a.png" }, "b": { "image": "./a.png", "size": 3 } } }"#;
     // The budget holds one copy.
     let mut options = LoadOptions::default();
-    options.limits.set("texture-bytes", "48").unwrap();
+    options.limits.set("texture-bytes", "100").unwrap();
     let scene = folder.load(text, &options).unwrap();
     let [Texture::Image(a), Texture::Image(b)] = &scene.textures[..] else { panic!("two images") };
     assert!(Arc::ptr_eq(&a.texels, &b.texels));

@@ -93,8 +93,8 @@ fn crowd(seed: u64) -> (Scene, Vec<Camera>) {
     let textures: Vec<TextureDesc> = ["a", "b", "c"]
         .into_iter()
         .map(|called| {
-            let width = 1 + random.below(13);
-            let texels = noise(&mut random, width * (1 + random.below(9)));
+            let (width, height) = (1 + random.below(13), 1 + random.below(9));
+            let texels = noise(&mut random, width * height);
             let sampler = pick(&mut random);
             texture(called, width as u32, &texels, sampler)
         })
@@ -186,13 +186,9 @@ fn surfaces_that_vary_keep_every_bit() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// One square seen straight on from a distance of 3, before a white wall that gives off light.
+/// One square seen straight on from a distance of 3, before a white wall that needs no light.
 fn before_a_wall(textures: Vec<TextureDesc>, square_of: MaterialDesc, mesh: MeshDesc) -> Scene {
-    let wall = MaterialDesc {
-        color: ColorSource::constant(Vec3::ZERO),
-        emission: ColorSource::constant(Vec3::ONE),
-        ..material("wall")
-    };
+    let wall = MaterialDesc { unlit: true, ..material("wall") };
     let plane = ShapeDesc::Plane { point: -DVec3::Z * 5.0, normal: DVec3::Z };
     let called = square_of.name.clone();
     built(SceneDesc {
@@ -221,6 +217,9 @@ const NEAREST: Sampler = Sampler {
     minification: Blending::Nearest,
     between_levels: None,
 };
+
+/// The outermost texels beyond the edges, too.
+const HELD: Sampler = Sampler { wrap: [Wrap::Clamp; 2], ..NEAREST };
 
 #[test]
 fn what_lies_behind_holes_is_seen_and_lit_through_them() {
@@ -298,14 +297,14 @@ fn bumps_lean_away_from_where_they_rise() {
     let relief = Relief { bump: scaled("ramp", 0.5), ..Relief::NONE };
     let film = relieved(vec![texture("ramp", 64, &ramp, linear)], relief);
     // Rising to the right it leans to the left: darker on the left, brighter on the right.
-    assert!(quarter(&film, [-1, 1]).x < 0.9 * quarter(&film, [1, 1]).x);
+    assert!(quarter(&film, [-1, 1]).x < 0.95 * quarter(&film, [1, 1]).x);
 }
 
 #[test]
 fn parallax_shows_the_bottom_nearer_to_the_middle() {
     // All at the bottom, and a colour that is red on the left half and green on the right.
     let (deep, red, green) = ([0, 0, 0, 255], [255, 0, 0, 255], [0, 255, 0, 255]);
-    let textures = || vec![texture("depth", 1, &[deep], NEAREST), texture("halves", 2, &[red, green], NEAREST)];
+    let textures = || vec![texture("depth", 1, &[deep], NEAREST), texture("halves", 2, &[red, green], HELD)];
     let film = |height: f32| {
         let carved = MaterialDesc {
             relief: Relief { parallax: scaled("depth", height), ..Relief::NONE },
@@ -320,7 +319,7 @@ fn parallax_shows_the_bottom_nearer_to_the_middle() {
     };
     let [flat, deep] = [film(0.0), film(0.3)];
     let reds = |film: &Film| (0..64).filter(|&x| film.color(x, 32) == [1.0, 0.0, 0.0]).count();
-    assert!(reds(&deep) > reds(&flat) + 2 || reds(&deep) + 2 < reds(&flat), "{} {}", reds(&deep), reds(&flat));
+    assert!(reds(&deep) > reds(&flat) + 2, "{} {}", reds(&deep), reds(&flat));
 }
 
 #[test]
