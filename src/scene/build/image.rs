@@ -65,6 +65,11 @@ impl ImageStore {
         Self { files, decoded, embedded, bytes_left: limits.texture_bytes, limits: limits.clone() }
     }
 
+    /// The files that the scene may read.
+    pub fn files(&mut self) -> &mut Files {
+        &mut self.files
+    }
+
     /// The texels of images, in the same order.
     ///
     /// # Errors
