@@ -2,6 +2,7 @@
 
 mod json;
 mod place;
+mod xml;
 
 use super::build::SceneBuilder;
 use super::desc::SceneDesc;
@@ -41,6 +42,7 @@ pub struct Format {
 /// Every format.
 pub const FORMATS: &[Format] = &[
     Format { name: "JSON", extensions: &["json"], read: json::read },
+    Format { name: "XML", extensions: &["xml"], read: xml::read },
 ];
 
 /// Loads a scene from a file; its format is known by its extension.
