@@ -85,10 +85,9 @@ fn is_body(object: &ObjectDesc) -> bool {
         ShapeDesc::Cone { capped, .. } => capped,
         // A lone triangle is described like a mesh, but bounds nothing.
         ShapeDesc::Mesh(_) => object.kind == "mesh",
-        ShapeDesc::Disk { .. }
-        | ShapeDesc::Rectangle { .. }
-        | ShapeDesc::Group { .. }
-        | ShapeDesc::Model { .. } => false,
+        ShapeDesc::Disk { .. } | ShapeDesc::Rectangle { .. } | ShapeDesc::Group { .. } | ShapeDesc::Model { .. } => {
+            false
+        }
     }
 }
 

@@ -1,7 +1,10 @@
 //! Scene files by format: one row a format, one reader a row.
 
 mod json;
+mod nff;
 mod place;
+mod polygon;
+mod words;
 mod xml;
 
 use super::build::SceneBuilder;
@@ -43,6 +46,7 @@ pub struct Format {
 pub const FORMATS: &[Format] = &[
     Format { name: "JSON", extensions: &["json"], read: json::read },
     Format { name: "XML", extensions: &["xml"], read: xml::read },
+    Format { name: "NFF", extensions: &["nff"], read: nff::read },
 ];
 
 /// Loads a scene from a file; its format is known by its extension.
@@ -111,7 +115,8 @@ fn settle(
     places: impl Fn(&[At]) -> Vec<Place>,
 ) -> Result<(), SceneError> {
     let added = described.and_then(|scene| builder.add(scene, &mut warnings));
-    added.map_err(|problem| SceneError::Invalid { place: places(&[problem.at]).remove(0), message: problem.message })?;
+    added
+        .map_err(|problem| SceneError::Invalid { place: places(&[problem.at]).remove(0), message: problem.message })?;
     builder.warn(placed(warnings, places));
     Ok(())
 }

@@ -1,5 +1,16 @@
 //! Positions in a text as people count them.
 
+use crate::scene::desc::problem::At;
+use crate::scene::error::Place;
+use std::path::Path;
+
+/// The places of positions in a text that has lines but no names for its parts.
+pub fn by_line(file: &Path, text: &[u8], positions: &[At]) -> Vec<Place> {
+    let place =
+        |at: &At| Place { file: file.to_owned(), line_column: Some(line_column(text, at.0)), pointer: String::new() };
+    positions.iter().map(place).collect()
+}
+
 /// 1-based line and column (in characters) of a byte offset.
 pub fn line_column(text: &[u8], offset: usize) -> (usize, usize) {
     let before = &text[..offset.min(text.len())];

@@ -1,5 +1,9 @@
 //! Scene formats other than JSON, what they share, and what becomes of damaged files of any.
 
+mod corpus;
+mod model;
+mod mutation;
+mod nff;
 mod xml;
 
 use raywalk::render::{Film, Planes, Scratch, render_frame};

@@ -38,13 +38,25 @@ const WRONG: &[(&str, &str, &str)] = &[
     ("<scene version=\"§one\"/>", "/scene/@version", "expected a number, found a string"),
     ("<scene version=\"1\">\n  §stray\n  <objects/></scene>", "/scene", "unexpected text \"stray\""),
     ("<scene version=\"1\"><camera position=\"0 §x 5\"/></scene>", "/scene/camera/@position", "expected a number"),
-    ("<scene version=\"1\"><camera position=\"§0 5\"/></scene>", "/scene/camera/@position", "expected 3 numbers, found 2"),
+    (
+        "<scene version=\"1\"><camera position=\"§0 5\"/></scene>",
+        "/scene/camera/@position",
+        "expected 3 numbers, found 2",
+    ),
     ("<scene version=\"1\"><camera position=\"0 1 §1e39\"/></scene>", "/scene/camera/@position", "too large"),
     ("<scene version=\"1\"><camera position=\"0 1 §nan\"/></scene>", "/scene/camera/@position", "expected a number"),
     ("<scene version=\"1\" camera=\"§big\"/>", "/scene/@camera", "expected an element, found a string"),
     ("<scene version=\"1\"><lights/><§lights/></scene>", "/scene/lights[2]", "stands twice"),
-    ("<scene version=\"1\"><render width=\"8\"><§width>8</width></render></scene>", "/scene/render/width", "stands twice"),
-    ("<scene version=\"1\"><materials><§material ior=\"1\"/></materials></scene>", "/scene/materials/material", "missing id"),
+    (
+        "<scene version=\"1\"><render width=\"8\"><§width>8</width></render></scene>",
+        "/scene/render/width",
+        "stands twice",
+    ),
+    (
+        "<scene version=\"1\"><materials><§material ior=\"1\"/></materials></scene>",
+        "/scene/materials/material",
+        "missing id",
+    ),
     (
         "<scene version=\"1\"><materials><§texture id=\"a\"/></materials></scene>",
         "/scene/materials/texture[@id='a']",
@@ -60,11 +72,7 @@ const WRONG: &[(&str, &str, &str)] = &[
         "/scene/materials/material[@id='a']/@color",
         "#rrggbb",
     ),
-    (
-        "<scene version=\"1\"><objects §size=\"1\"/></scene>",
-        "/scene/objects/@size",
-        "unexpected attribute \"size\"",
-    ),
+    ("<scene version=\"1\"><objects §size=\"1\"/></scene>", "/scene/objects/@size", "unexpected attribute \"size\""),
     ("<scene version=\"1\"><objects><§ball/></objects></scene>", "/scene/objects/ball", "unknown object type \"ball\""),
     (
         "<scene version=\"1\"><objects><sphere center=\"0 0 0\" radius=\"1\"/><sphere center=\"0 0 0\" radius=\"§-1\"/></objects></scene>",

@@ -49,9 +49,8 @@ fn text_of<'t>(input: &Input<'t>, limits: &Limits) -> Result<&'t str, SceneError
         let at = Some(line_column(input.bytes, error.valid_up_to()));
         invalid(input.path, at, "the text is not UTF-8; save the file in that encoding".to_owned())
     })?;
-    screen::screen(text, limits).map_err(|problem| {
-        invalid(input.path, Some(line_column(input.bytes, problem.at.0)), problem.message)
-    })?;
+    screen::screen(text, limits)
+        .map_err(|problem| invalid(input.path, Some(line_column(input.bytes, problem.at.0)), problem.message))?;
     Ok(text)
 }
 
