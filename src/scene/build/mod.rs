@@ -36,6 +36,9 @@ use std::time::Instant;
 /// Ambient light of a scene that has no lights.
 const HEADLIGHT_AMBIENT: Vec3 = Vec3::splat(0.1);
 
+/// Warnings kept of all files together, each of which has a limit of its own.
+const MOST_WARNINGS: usize = 1000;
+
 /// A scene under construction.
 pub struct SceneBuilder {
     name: String,
@@ -103,9 +106,10 @@ impl SceneBuilder {
         self.images.files().locate(name).is_ok()
     }
 
-    /// Adds warnings that have found their place.
+    /// Adds warnings that have found their place, as long as there are not too many.
     pub fn warn(&mut self, warnings: Vec<Warning>) {
-        self.warnings.extend(warnings);
+        let room = MOST_WARNINGS.saturating_sub(self.warnings.len());
+        self.warnings.extend(warnings.into_iter().take(room));
     }
 
     /// Adds what a description says: of the scene, or of the model that is being read.
@@ -249,7 +253,7 @@ impl<'a> TextureUses<'a> {
     /// Adds those that nothing names: their files are to be there, too.
     fn add_unused(&mut self) -> Outcome<()> {
         for place in 0..self.textures.len() {
-            if !self.used.iter().any(|(used, _)| *used == place) {
+            if !self.indices.contains_key(&(place, Encoding::Data)) {
                 self.add(place, Encoding::Color)?;
             }
         }

@@ -4,7 +4,7 @@
 //! when it is asked for, and long lists of numbers are read in one go, so that a scene of a million
 //! triangles needs no tree in memory.
 
-use super::place::{byte_offset, line_column};
+use super::place::{by_line, byte_offset, line_column};
 use super::{Input, settle};
 use crate::scene::build::SceneBuilder;
 use crate::scene::desc::map::shortened;
@@ -69,12 +69,8 @@ impl<'t> Document<'t> {
         sorted.sort_unstable();
         let mut pointers = vec![String::new(); positions.len()];
         point(self.root(), "", &sorted, &mut pointers);
-        let place = |(at, pointer): (&At, String)| Place {
-            file: self.file.to_owned(),
-            line_column: Some(line_column(self.text.as_bytes(), at.0)),
-            pointer,
-        };
-        positions.iter().zip(pointers).map(place).collect()
+        let places = by_line(self.file, self.text.as_bytes(), positions).into_iter();
+        places.zip(pointers).map(|(place, pointer)| Place { pointer, ..place }).collect()
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod json;
 mod nff;
+mod obj;
 mod place;
 mod polygon;
 mod words;
@@ -47,6 +48,7 @@ pub const FORMATS: &[Format] = &[
     Format { name: "JSON", extensions: &["json"], read: json::read },
     Format { name: "XML", extensions: &["xml"], read: xml::read },
     Format { name: "NFF", extensions: &["nff"], read: nff::read },
+    Format { name: "OBJ", extensions: &["obj", "obj.zst"], read: obj::read },
 ];
 
 /// Loads a scene from a file; its format is known by its extension.

@@ -90,6 +90,7 @@ impl<'t> Reader<'t> {
             };
             read(self, word.at)?;
         }
+        self.cutter.warn(&mut self.warnings);
         // "A useful intensity as desired": the lights without a colour give 1/√n each, of n lights.
         let intensity = 1.0 / (self.scene.lights.len() as f32).sqrt();
         for light in &self.plain_lights {

@@ -1,14 +1,20 @@
 //! Polygons cut into triangles.
 
+use crate::scene::desc::problem::{At, Warnings};
 use earcut::Earcut;
 use glam::{DVec2, DVec3};
 
-/// Polygons of more corners that are not convex are cut as a fan: the time that ears take may grow with the square of
-/// the corners, and exceeds a second at 10,000 corners whose edges cross each other.
-const MOST_EARS: usize = 4096;
+/// Squares of the corners of all polygons that ears are cut from: the time that takes may grow with the square, and comes
+/// to some 13 ns of it where edges cross each other, which is 3 s in all.
+const MOST_EARS: u64 = 200_000_000;
+/// Polygons of no more corners are cut for nothing.
+const FEW_CORNERS: u64 = 64;
 
 /// Cuts polygons, one after the other.
 pub struct Cutter {
+    ears_left: u64,
+    /// Polygons that were cut as fans though they are not convex, once too many ears were cut.
+    fans: u64,
     ears: Earcut<f64>,
     /// The corners of a polygon in its plane.
     flat: Vec<[f64; 2]>,
@@ -17,7 +23,7 @@ pub struct Cutter {
 
 impl Cutter {
     pub fn new() -> Self {
-        Self { ears: Earcut::new(), flat: Vec::new(), cut: Vec::new() }
+        Self { ears_left: MOST_EARS, fans: 0, ears: Earcut::new(), flat: Vec::new(), cut: Vec::new() }
     }
 
     /// The triangles of a polygon, as indices into its corners, wound as it is. A convex polygon becomes a fan around
@@ -29,8 +35,16 @@ impl Cutter {
         self.flat.clear();
         self.flat.extend(corners.iter().map(|p| *p - corners[0]).map(|p| [p.dot(u), p.dot(v)]));
         self.cut.clear();
-        if corners.len() <= MOST_EARS && normal != DVec3::ZERO && !is_convex(&self.flat) {
-            self.ears.earcut_slice(&self.flat, &[], &mut self.cut);
+        if normal != DVec3::ZERO && !is_convex(&self.flat) {
+            let count = corners.len() as u64;
+            let price = if count > FEW_CORNERS { count.saturating_mul(count) } else { 0 };
+            match self.ears_left.checked_sub(price) {
+                None => self.fans += 1,
+                Some(left) => {
+                    self.ears_left = left;
+                    self.ears.earcut_slice(&self.flat, &[], &mut self.cut);
+                }
+            }
         }
         // A polygon without area has no ears; triangles without area are counted when they are left out.
         if self.cut.is_empty() {
@@ -39,6 +53,14 @@ impl Cutter {
         let (triangles, _) = self.cut.as_chunks_mut();
         triangles.iter_mut().filter(|t| turn(&self.flat, **t) < 0.0).for_each(|t| t.swap(1, 2));
         triangles
+    }
+
+    /// Warns of polygons that were cut as fans, if there are any.
+    pub fn warn(&self, warnings: &mut Warnings) {
+        if self.fans > 0 {
+            let message = format!("polygons with too many corners: {} may cover more than they should", self.fans);
+            warnings.push(At(0), message);
+        }
     }
 }
 
@@ -109,6 +131,11 @@ mod tests {
         let star = |n: u32| tilted((0..n).map(|i| f64::from(i) * 2.4).map(|a| (a.cos(), a.sin())));
         for corners in [star(4096), star(100_000), vec![DVec3::ZERO; 5], tilted([(1.0, 1.0), (2.0, 2.0), (3.0, 3.0)])] {
             assert!(!Cutter::new().cut(&corners).is_empty());
+        }
+        let (mut cutter, large) = (Cutter { ears_left: 3_000_000, ..Cutter::new() }, star(1000));
+        for fans in [0, 0, 0, 1, 2] {
+            assert!(!cutter.cut(&large).is_empty());
+            assert_eq!(cutter.fans, fans);
         }
         let huge = [DVec3::ZERO, DVec3::X * 3e38, DVec3::splat(3e38), DVec3::Y * 3e38];
         assert_eq!(Cutter::new().cut(&huge).len(), 2);

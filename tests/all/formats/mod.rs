@@ -4,6 +4,7 @@ mod corpus;
 mod model;
 mod mutation;
 mod nff;
+mod obj;
 mod xml;
 
 use raywalk::render::{Film, Planes, Scratch, render_frame};

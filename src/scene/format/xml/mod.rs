@@ -25,7 +25,7 @@ use roxmltree::{Document, Error, ParsingOptions};
 use std::path::Path;
 
 /// Nodes of the text, blanks and comments included, that an object may come to.
-const NODES_AN_OBJECT: u64 = 16;
+const NODES_AN_OBJECT: u64 = 8;
 
 /// Reads an XML scene into `builder`.
 pub fn read(input: &Input, builder: &mut SceneBuilder) -> Result<(), SceneError> {

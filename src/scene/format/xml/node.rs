@@ -126,7 +126,9 @@ impl<'t> Node<'t> for Xml<'t> {
     }
 
     fn text(self) -> Outcome<Cow<'t, str>> {
-        self.scalar("a string", |value| Some(Cow::Borrowed(value.text)))
+        let text = self.scalar("a string", |value| Some(value.text))?;
+        // Between tags, blanks are layout.
+        Ok(Cow::Borrowed(if matches!(self, Self::Text(_)) { text } else { text.trim() }))
     }
 
     fn boolean(self) -> Outcome<bool> {

@@ -3,18 +3,14 @@
 use crate::scene::desc::map::shortened;
 use crate::scene::desc::problem::At;
 use crate::scene::error::Place;
-use crate::scene::format::place::line_column;
+use crate::scene::format::place::by_line;
 use roxmltree::{Document, Node};
 use std::path::Path;
 
 /// The places of positions.
 pub fn places(file: &Path, document: &Document, positions: &[At]) -> Vec<Place> {
-    let place = |at: &At| Place {
-        file: file.to_owned(),
-        line_column: Some(line_column(document.input_text().as_bytes(), at.0)),
-        pointer: pointer(document.root(), at.0),
-    };
-    positions.iter().map(place).collect()
+    let places = by_line(file, document.input_text().as_bytes(), positions).into_iter();
+    places.zip(positions).map(|(place, at)| Place { pointer: pointer(document.root(), at.0), ..place }).collect()
 }
 
 /// The XPath of the innermost element or attribute around a position.

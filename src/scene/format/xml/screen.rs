@@ -53,7 +53,6 @@ fn tag(bytes: &[u8], start: usize) -> (usize, usize) {
     for (i, &byte) in bytes.iter().enumerate().skip(start) {
         match (quote, byte) {
             (Some(open), _) if byte == open => quote = None,
-            (Some(_), _) => {}
             (None, b'"' | b'\'') => quote = Some(byte),
             (None, b'=') => attributes += 1,
             (None, b'>') => return (i + 1, attributes),
