@@ -26,6 +26,7 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
 #[derive(Debug, Serialize)]
 struct Info {
     scene: String,
+    format: &'static str,
     #[serde(flatten)]
     counts: SceneCounts,
     objects_by_type: BTreeMap<&'static str, usize>,
@@ -62,6 +63,7 @@ impl Info {
         let headlight = scene.headlight.then_some("headlight");
         Self {
             scene: scene.name.clone(),
+            format: scene.format,
             counts: SceneCounts::of(scene),
             objects_by_type: tally(scene.objects.iter().map(|object| object.kind)),
             lights_by_type: tally(scene.lights.iter().map(kind_of_light).chain(headlight)),
@@ -83,6 +85,7 @@ impl Info {
             self.bounds.as_ref().map_or("nothing finite".to_owned(), |b| format!("{:?} to {:?}", b.min, b.max));
         let mut lines = vec![
             line("scene", &self.scene),
+            line("format", self.format),
             line("objects", &with_types(c.objects, &self.objects_by_type)),
             line("primitives", &format!("{} ({} triangles, {} spheres)", c.primitives, c.triangles, c.spheres)),
             line("materials", &self.materials.to_string()),

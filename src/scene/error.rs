@@ -9,7 +9,8 @@ pub struct Place {
     pub file: PathBuf,
     /// 1-based line and column, where known.
     pub line_column: Option<(usize, usize)>,
-    /// JSON pointer of the value, such as `/objects/3/radius`; empty for the whole file.
+    /// The value's JSON pointer, such as `/objects/3/radius`, or XPath, such as `/scene/objects/sphere[4]/@radius`;
+    /// empty for the whole file and in formats without names for their parts.
     pub pointer: String,
 }
 

@@ -5,6 +5,7 @@ use super::limits::exceeded;
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, Read};
+use std::mem;
 use std::path::{Path, PathBuf};
 
 /// Why a file could not be read.
@@ -37,6 +38,8 @@ enum Source {
 #[derive(Debug)]
 pub struct Files {
     source: Source,
+    /// The folder that names are relative to.
+    folder: PathBuf,
     bytes_left: u64,
     limit: u64,
 }
@@ -48,33 +51,43 @@ impl Files {
     /// The folder does not exist or cannot be entered.
     pub fn beside(scene: &Path, limits: &Limits) -> Result<Self, FileError> {
         let folder = scene.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        Ok(Self::new(Source::Folder(folder.canonicalize()?), limits))
+        let folder = folder.canonicalize()?;
+        Ok(Self::new(Source::Folder(folder.clone()), folder, limits))
     }
 
     /// Files embedded in the program.
     pub fn embedded(files: &'static [(&'static str, &'static [u8])], limits: &Limits) -> Self {
-        Self::new(Source::Embedded(files), limits)
+        Self::new(Source::Embedded(files), PathBuf::new(), limits)
     }
 
-    fn new(source: Source, limits: &Limits) -> Self {
-        Self { source, bytes_left: limits.file_bytes, limit: limits.file_bytes }
+    fn new(source: Source, folder: PathBuf, limits: &Limits) -> Self {
+        Self { source, folder, bytes_left: limits.file_bytes, limit: limits.file_bytes }
     }
 
-    /// The one path of a file that the scene names, whatever links and dots the name holds.
+    /// From now on names are relative to `folder`, that of a located file; gives the folder up to now, at first the
+    /// scene's.
+    pub fn relative_to(&mut self, folder: PathBuf) -> PathBuf {
+        mem::replace(&mut self.folder, folder)
+    }
+
+    /// The one path of a file that the scene or a model of it names, whatever links and dots the name holds.
     ///
     /// # Errors
     /// There is no such file, or it is not in the scene's folder.
     pub fn locate(&self, name: &str) -> Result<PathBuf, FileError> {
         match &self.source {
-            Source::Embedded(_) => Ok(PathBuf::from(name)),
-            Source::Folder(folder) => {
+            Source::Embedded(_) => Ok(self.folder.join(name)),
+            Source::Folder(scene) => {
                 // A rooted or drive-relative name would replace the folder instead of extending it.
                 let relative = Path::new(name);
                 if relative.has_root() || relative.is_absolute() {
                     return Err(FileError::Outside);
                 }
-                let path = folder.join(relative).canonicalize()?;
-                if path.starts_with(folder) { Ok(path) } else { Err(FileError::Outside) }
+                let path = self.folder.join(relative);
+                // Asked first, since it takes a fraction of the time where there is nothing.
+                path.symlink_metadata()?;
+                let path = path.canonicalize()?;
+                if path.starts_with(scene) { Ok(path) } else { Err(FileError::Outside) }
             }
         }
     }
@@ -132,6 +145,18 @@ mod tests {
         assert!(matches!(files.locate("nul\0byte.png"), Err(FileError::Io(_))));
         let folder = files.locate("format").unwrap();
         assert!(matches!(files.read(&folder), Err(FileError::NotRegular)));
+    }
+
+    #[test]
+    fn names_in_a_model_are_relative_to_it_and_stay_with_the_scene() {
+        let mut files = own_sources();
+        let model = files.locate("format/mod.rs").unwrap();
+        let scenes = files.relative_to(model.parent().unwrap().to_owned());
+        assert_eq!(Some(&*scenes), model.parent().unwrap().parent());
+        let sibling = files.locate("json.rs").unwrap();
+        assert_eq!(sibling.parent(), model.parent());
+        assert_eq!(files.locate("../files.rs").unwrap().parent(), model.parent().unwrap().parent());
+        assert!(matches!(files.locate("../../lib.rs"), Err(FileError::Outside)));
     }
 
     #[test]

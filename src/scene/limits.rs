@@ -13,7 +13,9 @@ pub struct Limits {
     pub objects: u64,
     /// Primitives: triangles, spheres and the like.
     pub primitives: u64,
-    /// Levels of objects and lists within each other in a scene file.
+    /// Groups, models and lights of models, each as often as it is placed.
+    pub nodes: u64,
+    /// Levels of objects and lists within each other in a scene file, and of groups and models in the scene.
     pub nesting: u64,
     /// Width and height of the picture that a scene may ask for.
     pub picture_edge: u64,
@@ -66,6 +68,13 @@ const ROWS: &[Row] = &[
         ceiling: u32::MAX as u64 - 1,
         field: |l| &mut l.primitives,
     },
+    Row {
+        name: "nodes",
+        help: "groups, models and lights of models as often as placed",
+        default: 1_000_000,
+        ceiling: u32::MAX as u64 - 1,
+        field: |l| &mut l.nodes,
+    },
     Row { name: "nesting", help: "levels of nesting", default: 128, ceiling: 256, field: |l| &mut l.nesting },
     Row {
         name: "picture-edge",
@@ -84,6 +93,7 @@ impl Default for Limits {
             texture_edge: 0,
             objects: 0,
             primitives: 0,
+            nodes: 0,
             nesting: 0,
             picture_edge: 0,
         };

@@ -69,6 +69,8 @@ impl Default for RenderDefaults {
 pub struct Scene {
     /// File name or another short title.
     pub name: String,
+    /// What the format of its file is called, such as `JSON`.
+    pub format: &'static str,
     /// Unique per built scene: caches keyed by it never outlive it.
     pub generation: u64,
     /// Milliseconds that sorting its shapes and building the tree took.

@@ -143,7 +143,9 @@ fn wrong_input_is_exit_1_with_one_line() {
     let bench = Bench::new();
     bench.write("scene.json", SCENE);
     bench.write("zero.json", r#"{ "version": 1, "render": { "width": 0, "height": 720 } }"#);
-    bench.write("huge.json", r#"{ "version": 1, "render": { "width": 30000, "height": 30000 } }"#);
+    let ball = r#"{ "type": "sphere", "center": [0, 0, 0], "radius": 1 }"#;
+    let huge = r#""render": { "width": 30000, "height": 30000 }"#;
+    bench.write("huge.json", format!(r#"{{ "version": 1, {huge}, "objects": [ {ball} ] }}"#));
     bench.write("broken.json", "{ \"version\": 1,\n  \"objects\": [ { \"type\": \"sphere\", ] }");
     bench.write("path.json", r#"{ "version": 1, "keys": [] }"#);
     for (line, expected) in [

@@ -11,6 +11,7 @@ mod exactness;
 mod flat_mirrors;
 #[path = "../common/flips.rs"]
 mod flips;
+mod formats;
 mod imports;
 mod interpolation;
 mod our_scenes;

@@ -18,6 +18,7 @@ fn scene() -> Scene {
     let named = |name: &str| NamedCamera { name: name.to_owned(), camera: Camera::default() };
     Scene {
         name: "room".to_owned(),
+        format: "JSON",
         generation: 1,
         geometry: Geometry::build(Vec::new()),
         build_ms: 0.0,

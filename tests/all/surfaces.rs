@@ -19,6 +19,7 @@ use raywalk::scene::texture::{Blending, Sampler, Wrap};
 use raywalk::scene::{Camera, Light, Limits, NamedCamera, Scene};
 use raywalk::settings::Settings;
 use std::io::Cursor;
+use std::path::Path;
 use std::sync::Arc;
 
 fn name(text: &str) -> NameRef {
@@ -68,7 +69,7 @@ fn square() -> MeshDesc {
 
 fn built(scene: SceneDesc) -> Scene {
     let limits = Limits::default();
-    let mut builder = SceneBuilder::new("surfaces", Files::embedded(&[], &limits), limits);
+    let mut builder = SceneBuilder::new(Path::new("surfaces"), "made", Files::embedded(&[], &limits), limits);
     builder.add(scene, &mut Warnings::default()).unwrap();
     builder.finish()
 }

@@ -10,7 +10,7 @@ use crate::scene::texels::Texels;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
 use rayon::prelude::*;
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -37,6 +37,8 @@ enum DecodeError {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum Key {
     File(PathBuf, Encoding),
+    /// Colours and opacity.
+    Masked(PathBuf, PathBuf, Encoding),
     /// By the address of the bytes, which stay where they are until the scene is built.
     Embedded(usize, Encoding),
 }
@@ -45,7 +47,16 @@ enum Key {
 struct Waiting {
     key: Key,
     bytes: Cow<'static, [u8]>,
+    /// The image that holds its opacity.
+    opacity: Option<Cow<'static, [u8]>>,
     encoding: Encoding,
+}
+
+/// The images that wait to be decoded.
+#[derive(Default)]
+struct Queue {
+    images: Vec<Waiting>,
+    keys: HashSet<Key>,
 }
 
 /// The images of a scene by where they come from, and how many bytes more they may take.
@@ -65,30 +76,43 @@ impl ImageStore {
         Self { files, decoded, embedded, bytes_left: limits.texture_bytes, limits: limits.clone() }
     }
 
+    /// The files that the scene may read.
+    pub fn files(&mut self) -> &mut Files {
+        &mut self.files
+    }
+
     /// The texels of images, in the same order.
     ///
     /// # Errors
     /// An image that cannot be read or decoded and may not be missing; one that may be is a warning, and a placeholder.
     pub fn load(&mut self, images: &[(ImageDesc, Encoding)], warnings: &mut Warnings) -> Outcome<Vec<Arc<Texels>>> {
-        let mut waiting = Vec::new();
+        let mut waiting = Queue::default();
         let mut keys = Vec::with_capacity(images.len());
         for (image, encoding) in images {
             keys.push(self.read(image, *encoding, &mut waiting));
         }
-        self.decode(waiting);
+        self.decode(waiting.images);
         images.iter().zip(keys).map(|((image, _), key)| self.finished(image, key, warnings)).collect()
     }
 
     /// Reads an image that is not known yet, for it to be decoded.
-    fn read(&mut self, image: &ImageDesc, encoding: Encoding, waiting: &mut Vec<Waiting>) -> Result<Key, FileError> {
-        let (key, bytes) = match &image.source {
+    fn read(&mut self, image: &ImageDesc, encoding: Encoding, waiting: &mut Queue) -> Result<Key, FileError> {
+        let (key, bytes, opacity) = match &image.source {
             ImageSource::File(name) => {
                 let path = self.files.locate(&name.name)?;
                 let key = Key::File(path.clone(), encoding);
                 if self.is_known(&key, waiting) {
                     return Ok(key);
                 }
-                (key, self.files.read(&path)?)
+                (key, self.files.read(&path)?, None)
+            }
+            ImageSource::Masked { name, opacity } => {
+                let (path, mask) = (self.files.locate(&name.name)?, self.files.locate(&opacity.name)?);
+                let key = Key::Masked(path.clone(), mask.clone(), encoding);
+                if self.is_known(&key, waiting) {
+                    return Ok(key);
+                }
+                (key, self.files.read(&path)?, Some(self.files.read(&mask)?))
             }
             ImageSource::Embedded { bytes, .. } => {
                 let key = Key::Embedded(bytes.as_ptr() as usize, encoding);
@@ -96,15 +120,16 @@ impl ImageStore {
                     return Ok(key);
                 }
                 self.embedded.push(Arc::clone(bytes));
-                (key, Cow::Owned(bytes.to_vec()))
+                (key, Cow::Owned(bytes.to_vec()), None)
             }
         };
-        waiting.push(Waiting { key: key.clone(), bytes, encoding });
+        waiting.keys.insert(key.clone());
+        waiting.images.push(Waiting { key: key.clone(), bytes, opacity, encoding });
         Ok(key)
     }
 
-    fn is_known(&self, key: &Key, waiting: &[Waiting]) -> bool {
-        self.decoded.contains_key(key) || waiting.iter().any(|waiting| waiting.key == *key)
+    fn is_known(&self, key: &Key, waiting: &Queue) -> bool {
+        self.decoded.contains_key(key) || waiting.keys.contains(key)
     }
 
     /// Decodes images side by side. What they may take is shared out beforehand, by what their headers say.
@@ -112,14 +137,16 @@ impl ImageStore {
         let budgets: Vec<Result<u64, DecodeError>> = waiting
             .iter()
             .map(|image| {
-                let needed = guarded(|| needed_bytes(&image.bytes, &self.limits))?;
+                let needed = |bytes: &[u8]| guarded(|| needed_bytes(bytes, &self.limits));
+                let opacity = image.opacity.as_deref().map_or(Ok(0), needed)?;
+                let needed = needed(&image.bytes)?.saturating_add(opacity);
                 let left = self.bytes_left.checked_sub(needed);
                 self.bytes_left = left.ok_or(DecodeError::Budget(self.limits.texture_bytes))?;
                 Ok(needed)
             })
             .collect();
         let decode = |(image, budget): (Waiting, Result<u64, DecodeError>)| {
-            let texels = budget.and_then(|budget| guarded(|| decode(&image.bytes, image.encoding, budget)));
+            let texels = budget.and_then(|budget| guarded(|| decode(&image, budget)));
             (image.key, texels.map(Arc::new).map_err(|error| error.to_string()))
         };
         let decoded: Vec<_> = waiting.into_par_iter().zip(budgets).map(decode).collect();
@@ -133,7 +160,8 @@ impl ImageStore {
         key: Result<Key, FileError>,
         warnings: &mut Warnings,
     ) -> Outcome<Arc<Texels>> {
-        let (ImageSource::File(name) | ImageSource::Embedded { name, .. }) = &image.source;
+        let (ImageSource::File(name) | ImageSource::Masked { name, .. } | ImageSource::Embedded { name, .. }) =
+            &image.source;
         let shown = shortened(&name.name);
         let problem = match key {
             Err(error) => format!("cannot read image \"{shown}\": {error}"),
@@ -176,13 +204,27 @@ fn needed_bytes(bytes: &[u8], limits: &Limits) -> Result<u64, DecodeError> {
     Ok(decoder.total_bytes().max(texels))
 }
 
-fn decode(bytes: &[u8], encoding: Encoding, budget: u64) -> Result<Texels, DecodeError> {
+fn decode(image: &Waiting, budget: u64) -> Result<Texels, DecodeError> {
+    let mut pixels = decoded(&image.bytes, budget)?.into_rgba8();
+    if let Some(opacity) = &image.opacity {
+        let opacity = decoded(opacity, budget)?;
+        let channel = if opacity.color().has_alpha() { 3 } else { 0 };
+        let opacity = opacity.into_rgba8();
+        let [across, up] = [(opacity.width(), pixels.width()), (opacity.height(), pixels.height())]
+            .map(|(from, to)| move |i: u32| (u64::from(i) * u64::from(from) / u64::from(to)) as u32);
+        for (x, y, pixel) in pixels.enumerate_pixels_mut() {
+            pixel.0[3] = opacity.get_pixel(across(x), up(y)).0[channel];
+        }
+    }
+    let (width, height) = pixels.dimensions();
+    Texels::new(width, height, pixels.into_raw().as_chunks().0, image.encoding, true).ok_or(DecodeError::Size)
+}
+
+/// An image of whatever kind; 16-bit channels are reduced to 8 later.
+fn decoded(bytes: &[u8], budget: u64) -> Result<DynamicImage, DecodeError> {
     let mut decoder = open(bytes)?;
     let mut limits = image::Limits::no_limits();
     limits.max_alloc = Some(budget);
     decoder.set_limits(limits)?;
-    let (width, height) = decoder.dimensions();
-    // 16-bit channels are reduced to 8.
-    let pixels = DynamicImage::from_decoder(decoder)?.into_rgba8().into_raw();
-    Texels::new(width, height, pixels.as_chunks().0, encoding, true).ok_or(DecodeError::Size)
+    Ok(DynamicImage::from_decoder(decoder)?)
 }

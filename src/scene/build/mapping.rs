@@ -4,7 +4,7 @@ use crate::scene::desc::{MeshDesc, ShapeDesc};
 use crate::scene::object::Mapping;
 use glam::{DVec3, Vec3};
 
-/// The mapping of a shape. A group has no surface; what it gets is never looked up.
+/// The mapping of a shape. Groups and models have no surface; what they get is never looked up.
 pub fn mapping(shape: &ShapeDesc) -> Mapping {
     match shape {
         ShapeDesc::Sphere { center, .. } => Mapping::Sphere { center: center.as_vec3() },
@@ -14,7 +14,7 @@ pub fn mapping(shape: &ShapeDesc) -> Mapping {
             Mapping::Axial { base: base.as_vec3(), axis: (*top - *base).normalize_or_zero().as_vec3() }
         }
         ShapeDesc::Mesh(mesh) => of_mesh(mesh),
-        ShapeDesc::Box { .. } | ShapeDesc::Group { .. } => Mapping::BoxFaces,
+        ShapeDesc::Box { .. } | ShapeDesc::Group { .. } | ShapeDesc::Model { .. } => Mapping::BoxFaces,
     }
 }
 

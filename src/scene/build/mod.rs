@@ -5,6 +5,7 @@ mod framing;
 mod holes;
 mod image;
 mod mapping;
+mod model;
 mod object;
 mod parts;
 mod placement;
@@ -15,7 +16,7 @@ use super::desc::map::shortened;
 use super::desc::problem::{At, Outcome, Problem, Warnings};
 use super::desc::{ImageDesc, MaterialDesc, NameRef, SceneDesc, TextureDesc, TextureKind, hint};
 use super::error::Warning;
-use super::files::Files;
+use super::files::{FileError, Files};
 use super::limits::Limits;
 use super::material::Encoding;
 use super::texture::ImageTexture;
@@ -24,20 +25,28 @@ use crate::geometry::{Geometry, Part};
 use glam::Vec3;
 use holes::HoleMaps;
 use image::ImageStore;
+use model::{Contents, Models};
 use placement::Placement;
+use std::borrow::Cow;
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// Ambient light of a scene that has no lights.
 const HEADLIGHT_AMBIENT: Vec3 = Vec3::splat(0.1);
 
+/// Warnings kept of all files together, each of which has a limit of its own.
+const MOST_WARNINGS: usize = 1000;
+
 /// A scene under construction.
 pub struct SceneBuilder {
     name: String,
+    format: &'static str,
     limits: Limits,
     images: ImageStore,
     holes: HoleMaps,
+    models: Models,
     parts: Vec<Part>,
     objects: Vec<Object>,
     materials: Vec<Material>,
@@ -54,10 +63,14 @@ pub struct SceneBuilder {
 type Names = HashMap<String, u32>;
 
 impl SceneBuilder {
-    /// An empty scene that may read `files`.
-    pub fn new(name: &str, files: Files, limits: Limits) -> Self {
+    /// An empty scene of the file `scene`, which is in `format`; it may read `files`.
+    pub fn new(scene: &Path, format: &'static str, files: Files, limits: Limits) -> Self {
+        let name = scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let path = files.locate(&name).unwrap_or_else(|_| scene.to_owned());
         Self {
-            name: name.to_owned(),
+            name,
+            format,
+            models: Models::of(path, scene),
             images: ImageStore::new(files, &limits),
             limits,
             holes: HoleMaps::default(),
@@ -78,22 +91,43 @@ impl SceneBuilder {
         &self.limits
     }
 
-    /// Adds warnings that have found their place.
-    pub fn warn(&mut self, warnings: Vec<Warning>) {
-        self.warnings.extend(warnings);
+    /// The contents of a file that the scene names.
+    ///
+    /// # Errors
+    /// As for [`Files::locate`] and [`Files::read`].
+    pub fn read_file(&mut self, name: &str) -> Result<Cow<'static, [u8]>, FileError> {
+        let files = self.images.files();
+        let path = files.locate(name)?;
+        files.read(&path)
     }
 
-    /// Adds what a description says.
+    /// Whether there is a file of that name that the scene may read.
+    pub fn has_file(&mut self, name: &str) -> bool {
+        self.images.files().locate(name).is_ok()
+    }
+
+    /// Adds warnings that have found their place, as long as there are not too many.
+    pub fn warn(&mut self, warnings: Vec<Warning>) {
+        let room = MOST_WARNINGS.saturating_sub(self.warnings.len());
+        self.warnings.extend(warnings.into_iter().take(room));
+    }
+
+    /// Adds what a description says: of the scene, or of the model that is being read.
     ///
     /// # Errors
     /// A name that nothing bears, a file that cannot be read, a transform that does not fit its shape,
     /// or a limit that is exceeded.
     pub fn add(&mut self, scene: SceneDesc, warnings: &mut Warnings) -> Outcome<()> {
-        self.render = scene.render;
-        self.cameras.extend(scene.cameras);
-        self.lights.extend(scene.lights);
-        let materials = self.add_materials(scene.materials, &scene.textures, warnings)?;
-        self.add_objects(&scene.objects, &Placement::WORLD, &materials, warnings)
+        let SceneDesc { render, cameras, textures, materials, lights, objects } = scene;
+        let materials = self.add_materials(materials, &textures, warnings)?;
+        let contents = Contents { objects, lights, materials };
+        if self.models.is_reading() {
+            return self.place_model(contents, warnings);
+        }
+        self.render = render;
+        self.cameras.extend(cameras);
+        self.lights.extend(contents.lights);
+        self.add_objects(&contents.objects, &Placement::WORLD, &contents.materials, warnings)
     }
 
     /// Adds materials and the textures that they name; an image is read as colours or as data, as they use it.
@@ -158,12 +192,14 @@ impl SceneBuilder {
             let camera = framing::frame(finite_bounds(&self.objects), &self.render);
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
         }
+        drop(self.models);
         let start = Instant::now();
         let mut geometry = Geometry::build(self.parts);
         geometry.hole_maps = self.holes.maps;
         let build_ms = start.elapsed().as_secs_f64() * 1e3;
         Scene {
             name: self.name,
+            format: self.format,
             generation: GENERATION.fetch_add(1, Ordering::Relaxed),
             geometry,
             build_ms,
@@ -217,7 +253,7 @@ impl<'a> TextureUses<'a> {
     /// Adds those that nothing names: their files are to be there, too.
     fn add_unused(&mut self) -> Outcome<()> {
         for place in 0..self.textures.len() {
-            if !self.used.iter().any(|(used, _)| *used == place) {
+            if !self.indices.contains_key(&(place, Encoding::Data)) {
                 self.add(place, Encoding::Color)?;
             }
         }

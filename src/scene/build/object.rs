@@ -30,7 +30,16 @@ impl SceneBuilder {
             let own = object.transform.as_ref().map(|transform| parent.within(transform, object.at)).transpose()?;
             let placement = own.as_ref().unwrap_or(parent);
             match &object.shape {
-                ShapeDesc::Group { children } => self.add_objects(children, placement, materials, warnings)?,
+                ShapeDesc::Group { children } => {
+                    self.enter(object.at)?;
+                    self.add_objects(children, placement, materials, warnings)?;
+                    self.leave();
+                }
+                ShapeDesc::Model { file } => {
+                    self.enter(object.at)?;
+                    self.add_model(file, placement)?;
+                    self.leave();
+                }
                 _ => self.add_leaf(object, placement, materials, warnings)?,
             }
         }
@@ -76,7 +85,9 @@ fn is_body(object: &ObjectDesc) -> bool {
         ShapeDesc::Cone { capped, .. } => capped,
         // A lone triangle is described like a mesh, but bounds nothing.
         ShapeDesc::Mesh(_) => object.kind == "mesh",
-        ShapeDesc::Disk { .. } | ShapeDesc::Rectangle { .. } | ShapeDesc::Group { .. } => false,
+        ShapeDesc::Disk { .. } | ShapeDesc::Rectangle { .. } | ShapeDesc::Group { .. } | ShapeDesc::Model { .. } => {
+            false
+        }
     }
 }
 
@@ -109,7 +120,7 @@ fn add_shape(object: &ObjectDesc, placement: &Placement, cut: Option<&Cut>, part
             add_quad(0, [*corner, u, u + *edge_v, v], placement, parts)
         }
         ShapeDesc::Mesh(mesh) => add_mesh(mesh, placement, cut, parts),
-        ShapeDesc::Group { .. } => Ok(()),
+        ShapeDesc::Group { .. } | ShapeDesc::Model { .. } => Ok(()),
     }
 }
 
@@ -214,12 +225,13 @@ mod tests {
     use crate::scene::desc::SceneDesc;
     use crate::scene::files::Files;
     use glam::{DAffine3, DVec2};
+    use std::path::Path;
     use std::sync::Arc;
 
     /// The parts of one object under a transform.
     fn parts_of(shape: ShapeDesc, transform: Option<DAffine3>) -> Vec<Part> {
         let limits = Limits::default();
-        let mut builder = SceneBuilder::new("test", Files::embedded(&[], &limits), limits);
+        let mut builder = SceneBuilder::new(Path::new("test"), "none", Files::embedded(&[], &limits), limits);
         let object = ObjectDesc { at: At(0), kind: "shape", name: None, material: None, transform, shape };
         let scene = SceneDesc { objects: vec![object], ..SceneDesc::default() };
         builder.add(scene, &mut Warnings::default()).unwrap();

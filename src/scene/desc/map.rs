@@ -60,7 +60,7 @@ impl<'t, N: Node<'t>> Map<'t, N> {
         mut read: impl FnMut(Cow<'t, str>, At, N) -> Outcome<T>,
     ) -> Outcome<Vec<T>> {
         let Some(node) = self.take(key) else { return Ok(Vec::new()) };
-        let fields = node.fields()?.into_iter();
+        let fields = node.named_fields()?.into_iter();
         fields.filter(|f| !is_comment(f)).map(|f| read(f.key, f.at, f.value)).collect()
     }
 

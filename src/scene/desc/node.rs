@@ -56,8 +56,16 @@ pub trait Node<'t>: Copy {
     fn kind(self) -> Kind;
     /// The values of a map, in order. Names that stand twice are a problem.
     fn fields(self) -> Outcome<Vec<Field<'t, Self>>>;
+    /// The values of a map whose names are the user's own, such as those of materials.
+    fn named_fields(self) -> Outcome<Vec<Field<'t, Self>>> {
+        self.fields()
+    }
     /// The values of a list.
     fn items(self) -> Outcome<Vec<Self>>;
+    /// The values of a list whose values are lists themselves, even if there is only one.
+    fn rows(self) -> Outcome<Vec<Self>> {
+        self.items()
+    }
     /// A number.
     fn number(self) -> Outcome<f64>;
     /// A string.
@@ -65,7 +73,7 @@ pub trait Node<'t>: Copy {
     /// True or false.
     fn boolean(self) -> Outcome<bool>;
     /// A list of number tuples read in one go; `None` when any of it is something else: walk the
-    /// [`items`](Self::items) then to find out what.
+    /// [`rows`](Self::rows) then to find out what.
     fn number_rows<const N: usize>(self) -> Option<Vec<[f64; N]>>;
     /// A list of index tuples read in one go; `None` as for [`number_rows`](Self::number_rows).
     fn index_rows<const N: usize>(self) -> Option<Vec<[u32; N]>>;

@@ -64,6 +64,10 @@ pub enum ShapeDesc {
     Group {
         children: Vec<ObjectDesc>,
     },
+    /// Everything in another scene file but its cameras and what it asks of the picture.
+    Model {
+        file: NameRef,
+    },
 }
 
 /// Triangles over shared vertices.
@@ -90,7 +94,7 @@ pub struct MeshDesc {
 type ShapeReader<'t, N> = fn(&mut Map<'t, N>, &mut Context) -> Outcome<ShapeDesc>;
 
 /// Every type of object: its name in the file and what reads it.
-fn types<'t, N: Node<'t>>() -> [(&'static str, ShapeReader<'t, N>); 10] {
+fn types<'t, N: Node<'t>>() -> [(&'static str, ShapeReader<'t, N>); 11] {
     [
         ("sphere", sphere),
         ("plane", plane),
@@ -102,6 +106,7 @@ fn types<'t, N: Node<'t>>() -> [(&'static str, ShapeReader<'t, N>); 10] {
         ("triangle", triangle),
         ("mesh", mesh),
         ("group", group),
+        ("model", model),
     ]
 }
 
@@ -123,8 +128,8 @@ pub fn read<'t, N: Node<'t>>(node: N, context: &mut Context) -> Outcome<ObjectDe
         transform: map.optional("transform", |node| transform::read(node, context))?,
         shape: read(&mut map, context)?,
         material: match *kind {
-            // A group has no surface; a material there is an unknown key.
-            "group" => None,
+            // They have no surface of their own; a material there is an unknown key.
+            "group" | "model" => None,
             _ => map.optional("material", |node| Ok(NameRef { name: text(node)?, at: node.at() }))?,
         },
     };
@@ -224,7 +229,7 @@ fn vertex_attributes<'t, N: Node<'t>>(map: &mut Map<'t, N>, count: usize) -> Out
         let normals: Vec<DVec3> = one_a_vertex(node, count)?.into_iter().map(DVec3::from_array).collect();
         match normals.iter().position(|n| n.try_normalize().is_none()) {
             None => Ok(normals),
-            Some(zero) => direction(node.items()?[zero]).map(|_| normals),
+            Some(zero) => direction(node.rows()?[zero]).map(|_| normals),
         }
     })?;
     let uvs = map.or("uvs", Vec::new(), |node| one_a_vertex(node, count))?;
@@ -245,4 +250,9 @@ fn group<'t, N: Node<'t>>(map: &mut Map<'t, N>, context: &mut Context) -> Outcom
         node.items()?.into_iter().map(|child| read(child, context)).collect::<Outcome<_>>()
     })?;
     Ok(ShapeDesc::Group { children })
+}
+
+/// `{ "type": "model", "file": "room.glb" }`
+fn model<'t, N: Node<'t>>(map: &mut Map<'t, N>, _: &mut Context) -> Outcome<ShapeDesc> {
+    Ok(ShapeDesc::Model { file: map.required("file", |node| Ok(NameRef { name: text(node)?, at: node.at() }))? })
 }

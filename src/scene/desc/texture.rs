@@ -45,6 +45,13 @@ pub struct ImageDesc {
 pub enum ImageSource {
     /// In a file, relative to the scene's folder.
     File(NameRef),
+    /// In a file, but for the opacity, which another file holds: in its alpha channel, else in its brightness.
+    Masked {
+        /// The file of the colours.
+        name: NameRef,
+        /// The file of the opacity, relative to the scene's folder, too.
+        opacity: NameRef,
+    },
     /// Within the scene's own file.
     Embedded {
         /// Encoded as in an image file.

@@ -146,7 +146,7 @@ pub fn rows<'t, const N: usize>(node: impl Node<'t>) -> Outcome<Vec<[f64; N]>> {
     let finite = |rows: &Vec<[f64; N]>| rows.iter().flatten().all(|v| (*v as f32).is_finite());
     match node.number_rows().filter(finite) {
         Some(rows) => Ok(rows),
-        None => node.items()?.into_iter().map(tuple).collect(),
+        None => node.rows()?.into_iter().map(tuple).collect(),
     }
 }
 
@@ -155,7 +155,7 @@ pub fn indices<'t, const N: usize>(node: impl Node<'t>, count: usize, what: &str
     let known = |rows: &Vec<[u32; N]>| rows.iter().flatten().all(|i| (*i as usize) < count);
     match node.index_rows().filter(known) {
         Some(rows) => Ok(rows),
-        None => node.items()?.into_iter().map(|row| array(row, |i| index(i, count, what))).collect(),
+        None => node.rows()?.into_iter().map(|row| array(row, |i| index(i, count, what))).collect(),
     }
 }
 

@@ -4,14 +4,14 @@
 //! when it is asked for, and long lists of numbers are read in one go, so that a scene of a million
 //! triangles needs no tree in memory.
 
-use super::Input;
-use super::place::{byte_offset, line_column};
+use super::place::{by_line, byte_offset, line_column};
+use super::{Input, settle};
 use crate::scene::build::SceneBuilder;
 use crate::scene::desc::map::shortened;
 use crate::scene::desc::node::{Field, Kind, Node};
 use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
 use crate::scene::desc::{self, Context};
-use crate::scene::error::{Place, SceneError, Warning};
+use crate::scene::error::{Place, SceneError};
 use crate::scene::limits::exceeded;
 use serde::de::{DeserializeOwned, Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -27,10 +27,7 @@ pub fn read(input: &Input, builder: &mut SceneBuilder) -> Result<(), SceneError>
     let document = Document::parse(input.path, input.bytes, builder.limits().nesting)?;
     let mut context = Context { limits: builder.limits(), warnings: Warnings::default() };
     let described = desc::read(document.root(), &mut context);
-    let mut warnings = context.warnings;
-    described.and_then(|scene| builder.add(scene, &mut warnings)).map_err(|problem| document.error(problem))?;
-    builder.warn(document.warnings(warnings.into_problems()));
-    Ok(())
+    settle(described, context.warnings, builder, |positions| document.places(positions))
 }
 
 /// A text of valid JSON syntax.
@@ -66,30 +63,14 @@ impl<'t> Document<'t> {
         Json { text: self.text, raw: self.root }
     }
 
-    fn error(&self, problem: Problem) -> SceneError {
-        let place = self.places(&[problem.at]).remove(0);
-        SceneError::Invalid { place, message: problem.message }
-    }
-
-    fn warnings(&self, problems: Vec<Problem>) -> Vec<Warning> {
-        let positions: Vec<At> = problems.iter().map(|p| p.at).collect();
-        let places = self.places(&positions);
-        let warnings = problems.into_iter().zip(places);
-        warnings.map(|(problem, place)| Warning { place, message: problem.message }).collect()
-    }
-
     /// Line, column and pointer of positions, found in one walk that enters only what holds any of them.
     fn places(&self, positions: &[At]) -> Vec<Place> {
         let mut sorted: Vec<(At, usize)> = positions.iter().copied().zip(0..).collect();
         sorted.sort_unstable();
         let mut pointers = vec![String::new(); positions.len()];
         point(self.root(), "", &sorted, &mut pointers);
-        let place = |(at, pointer): (&At, String)| Place {
-            file: self.file.to_owned(),
-            line_column: Some(line_column(self.text.as_bytes(), at.0)),
-            pointer,
-        };
-        positions.iter().zip(pointers).map(place).collect()
+        let places = by_line(self.file, self.text.as_bytes(), positions).into_iter();
+        places.zip(pointers).map(|(place, pointer)| Place { pointer, ..place }).collect()
     }
 }
 

@@ -1,10 +1,17 @@
 //! Scene files by format: one row a format, one reader a row.
 
 mod json;
+mod nff;
+mod obj;
 mod place;
+mod polygon;
+mod words;
+mod xml;
 
 use super::build::SceneBuilder;
-use super::error::{Place, SceneError};
+use super::desc::SceneDesc;
+use super::desc::problem::{At, Outcome, Warnings};
+use super::error::{Place, SceneError, Warning};
 use super::files::{FileError, Files};
 use super::{Limits, Scene};
 use std::path::Path;
@@ -18,9 +25,9 @@ pub struct LoadOptions {
     pub limits: Limits,
 }
 
-/// The scene file that a reader is given.
+/// The scene or model file that a reader is given.
 pub struct Input<'a> {
-    /// Its path as the user gave it, for messages.
+    /// Its path from where the user stands, for messages.
     pub path: &'a Path,
     /// Its contents.
     pub bytes: &'a [u8],
@@ -37,7 +44,12 @@ pub struct Format {
 }
 
 /// Every format.
-pub const FORMATS: &[Format] = &[Format { name: "JSON", extensions: &["json"], read: json::read }];
+pub const FORMATS: &[Format] = &[
+    Format { name: "JSON", extensions: &["json"], read: json::read },
+    Format { name: "XML", extensions: &["xml"], read: xml::read },
+    Format { name: "NFF", extensions: &["nff"], read: nff::read },
+    Format { name: "OBJ", extensions: &["obj", "obj.zst"], read: obj::read },
+];
 
 /// Loads a scene from a file; its format is known by its extension.
 ///
@@ -75,14 +87,14 @@ pub fn load_text(name: &str, text: &str, options: &LoadOptions) -> Result<Scene,
 }
 
 fn read(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, SceneError> {
-    let file_name = input.path.file_name().unwrap_or_default().to_string_lossy();
-    let format = find(&file_name).ok_or_else(|| SceneError::UnknownFormat {
-        file: input.path.display().to_string(),
-        known: FORMATS.iter().flat_map(|f| f.extensions).map(|e| format!(".{e}")).collect::<Vec<_>>().join(", "),
-    })?;
-    let mut builder = SceneBuilder::new(&file_name, files, options.limits.clone());
+    let format = format_of(input.path)?;
+    let mut builder = SceneBuilder::new(input.path, format.name, files, options.limits.clone());
     (format.read)(input, &mut builder)?;
-    let scene = builder.finish();
+    let mut scene = builder.finish();
+    if scene.objects.is_empty() {
+        let message = "the scene holds no object; the picture is its background".to_owned();
+        scene.warnings.push(Warning { place: whole(input.path), message });
+    }
     match scene.warnings.first() {
         Some(warning) if options.strict => Err(SceneError::Invalid {
             place: warning.place.clone(),
@@ -92,6 +104,45 @@ fn read(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, Sce
     }
 }
 
+/// Reads a file of any format into a scene under construction.
+pub(super) fn read_into(builder: &mut SceneBuilder, input: &Input) -> Result<(), SceneError> {
+    (format_of(input.path)?.read)(input, builder)
+}
+
+/// Adds what a reader has described. `places` finds the places of positions, if there is anything to tell of them.
+fn settle(
+    described: Outcome<SceneDesc>,
+    mut warnings: Warnings,
+    builder: &mut SceneBuilder,
+    places: impl Fn(&[At]) -> Vec<Place>,
+) -> Result<(), SceneError> {
+    let added = described.and_then(|scene| builder.add(scene, &mut warnings));
+    added
+        .map_err(|problem| SceneError::Invalid { place: places(&[problem.at]).remove(0), message: problem.message })?;
+    builder.warn(placed(warnings, places));
+    Ok(())
+}
+
+/// Warnings with their places.
+fn placed(warnings: Warnings, places: impl Fn(&[At]) -> Vec<Place>) -> Vec<Warning> {
+    let problems = warnings.into_problems();
+    if problems.is_empty() {
+        return Vec::new();
+    }
+    let positions: Vec<At> = problems.iter().map(|problem| problem.at).collect();
+    let placed = problems.into_iter().zip(places(&positions));
+    placed.map(|(problem, place)| Warning { place, message: problem.message }).collect()
+}
+
+/// The format of a file, by its name.
+fn format_of(path: &Path) -> Result<&'static Format, SceneError> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    find(&name).ok_or_else(|| SceneError::UnknownFormat {
+        file: path.display().to_string(),
+        known: FORMATS.iter().flat_map(|f| f.extensions).map(|e| format!(".{e}")).collect::<Vec<_>>().join(", "),
+    })
+}
+
 /// The format that a file's name tells.
 fn find(file_name: &str) -> Option<&'static Format> {
     let name = file_name.to_lowercase();
@@ -99,8 +150,13 @@ fn find(file_name: &str) -> Option<&'static Format> {
     FORMATS.iter().find(|format| format.extensions.iter().any(ends))
 }
 
+/// A file as a whole.
+fn whole(path: &Path) -> Place {
+    Place { file: path.to_owned(), line_column: None, pointer: String::new() }
+}
+
 fn unreadable(path: &Path, error: FileError) -> SceneError {
-    let place = Place { file: path.to_owned(), line_column: None, pointer: String::new() };
+    let place = whole(path);
     match error {
         FileError::Io(source) => SceneError::Io { place, what: "the scene".to_owned(), source },
         other => SceneError::Invalid { place, message: format!("cannot read the scene: {other}") },

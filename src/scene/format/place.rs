@@ -1,12 +1,40 @@
 //! Positions in a text as people count them.
 
+use crate::scene::desc::problem::At;
+use crate::scene::error::Place;
+use std::path::Path;
+
+/// The places of positions in a text, but for the names that a format may have for its parts.
+pub fn by_line(file: &Path, text: &[u8], positions: &[At]) -> Vec<Place> {
+    let place = |found| Place { file: file.to_owned(), line_column: Some(found), pointer: String::new() };
+    line_columns(text, positions).into_iter().map(place).collect()
+}
+
 /// 1-based line and column (in characters) of a byte offset.
 pub fn line_column(text: &[u8], offset: usize) -> (usize, usize) {
-    let before = &text[..offset.min(text.len())];
-    let line = 1 + before.iter().filter(|b| **b == b'\n').count();
-    let start = before.iter().rposition(|b| *b == b'\n').map_or(0, |newline| newline + 1);
-    let is_first_byte = |b: &&u8| **b & 0xC0 != 0x80;
-    (line, 1 + before[start..].iter().filter(is_first_byte).count())
+    line_columns(text, &[At(offset)])[0]
+}
+
+/// 1-based lines and columns (in characters) of positions, found in one walk over the text.
+pub fn line_columns(text: &[u8], positions: &[At]) -> Vec<(usize, usize)> {
+    let mut sorted: Vec<(At, usize)> = positions.iter().copied().zip(0..).collect();
+    sorted.sort_unstable();
+    let is_first_byte = |byte: &&u8| **byte & 0xC0 != 0x80;
+    let (mut line, mut column, mut walked) = (1, 1, 0);
+    let mut found = vec![(1, 1); positions.len()];
+    for (at, i) in sorted {
+        let step = &text[walked..at.0.clamp(walked, text.len())];
+        walked += step.len();
+        match step.iter().rposition(|byte| *byte == b'\n') {
+            None => column += step.iter().filter(is_first_byte).count(),
+            Some(newline) => {
+                line += step.iter().filter(|byte| **byte == b'\n').count();
+                column = 1 + step[newline + 1..].iter().filter(is_first_byte).count();
+            }
+        }
+        found[i] = (line, column);
+    }
+    found
 }
 
 /// Byte offset of a 1-based line and column in bytes.
@@ -27,6 +55,7 @@ mod tests {
         assert_eq!(line_column(text, 2), (2, 1));
         assert_eq!(line_column(text, 5), (2, 3));
         assert_eq!(line_column(text, 99), (2, 5));
+        assert_eq!(line_columns(text, &[5, 0, 99, 2].map(At)), [(2, 3), (1, 1), (2, 5), (2, 1)]);
         assert_eq!(byte_offset(text, 1, 1), 0);
         assert_eq!(byte_offset(text, 2, 4), 5);
         assert_eq!(byte_offset(text, 9, 9), text.len());

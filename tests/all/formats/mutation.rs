@@ -1,0 +1,149 @@
+//! Damaged files of every format: each gives a scene that can be drawn, or an error; none ends the program.
+//!
+//! A normal run tries some hundred mutations of each seed, the same ones on every machine; `RAYWALK_FUZZ=SECONDS` goes
+//! on for so long with fresh ones.
+
+use super::picture;
+use crate::random::Random;
+use crate::temporary::Folder;
+use raywalk::scene::{FORMATS, LoadOptions, load};
+use std::time::{Duration, Instant, SystemTime};
+
+/// Mutations of each seed in a normal run.
+const TRIES: usize = 700;
+
+/// A valid file, and what is put into it.
+struct Seed {
+    name: &'static str,
+    /// The scene that it is a part of, where it is none.
+    part_of: Option<&'static str>,
+    bytes: &'static [u8],
+    tokens: &'static [&'static str],
+}
+
+const SEEDS: &[Seed] = &[
+    Seed {
+        name: "s.json",
+        part_of: None,
+        bytes: include_bytes!("../every_type.json"),
+        tokens: &["{", "}", "[", "]", "\"", ",", "-", "1e39", "null", "0", "[]", "\"texture\":", "\"model\""],
+    },
+    Seed {
+        name: "s.xml",
+        part_of: None,
+        bytes: include_bytes!("every_type.xml"),
+        tokens: &[
+            "<",
+            ">",
+            "/>",
+            "\"",
+            "=",
+            ",",
+            "-",
+            "1e39",
+            "<!--",
+            "<![CDATA[",
+            "&#0;",
+            "<!",
+            "<model file='s.xml'/>",
+        ],
+    },
+    Seed {
+        name: "s.nff",
+        part_of: None,
+        bytes: include_bytes!("every_entity.nff"),
+        tokens: &["\n", " ", "#", "-", "1e39", "nan", "p 1e9 ", "pp 4 ", "c ", "0 0 0 0 ", "v ", "f "],
+    },
+    Seed {
+        name: "s.obj",
+        part_of: None,
+        bytes: include_bytes!("every_statement.obj"),
+        tokens: &[
+            "\n",
+            " ",
+            "/",
+            "-",
+            "1e39",
+            "nan",
+            "f ",
+            "f 1 2 3 1 2 3\n",
+            "-1",
+            "0",
+            "\\\n",
+            "usemtl ",
+            "mtllib s.obj\n",
+            "vt 1\n",
+        ],
+    },
+    Seed {
+        name: "every_statement.mtl",
+        part_of: Some("library.obj"),
+        bytes: include_bytes!("every_statement.mtl"),
+        tokens: &["\n", " ", "#", "-", "1e39", "nan", "newmtl ", "d ", "map_Kd ", "-s ", "-o 1 ", "-bm ", "../", "\\"],
+    },
+];
+
+/// Damages a file in one to three places.
+fn mutated(seed: &Seed, random: &mut Random) -> Vec<u8> {
+    let mut bytes = seed.bytes.to_vec();
+    for _ in 0..=random.below(3) {
+        let at = random.below(bytes.len());
+        let end = (at + random.below(40)).min(bytes.len());
+        match random.below(5) {
+            0 => bytes[at] = random.below(256) as u8,
+            1 => drop(bytes.drain(at..end)),
+            2 => drop(bytes.splice(at..at, random.pick(seed.tokens).bytes())),
+            3 => {
+                let copied = bytes[at..end].to_vec();
+                let to = random.below(bytes.len());
+                drop(bytes.splice(to..to, copied));
+            }
+            // A digit for another: the file stays valid, the numbers become odd.
+            _ => {
+                if let Some(offset) = bytes[at..].iter().position(u8::is_ascii_digit) {
+                    bytes[at + offset] = b'0' + random.below(10) as u8;
+                }
+            }
+        }
+    }
+    bytes
+}
+
+#[test]
+fn every_text_format_has_a_seed() {
+    for format in FORMATS {
+        let has_seed = |extension: &&str| SEEDS.iter().any(|seed| seed.name.ends_with(&format!(".{extension}")));
+        assert!(format.extensions.iter().any(has_seed), "{}", format.name);
+    }
+}
+
+#[test]
+fn damaged_files_never_end_the_program() {
+    let folder = Folder::new();
+    folder.write("library.obj", include_str!("every_statement.obj"));
+    let fuzz: Option<f64> = std::env::var("RAYWALK_FUZZ").ok().map(|text| text.parse().expect("a number of seconds"));
+    let fresh = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64);
+    let mut random = Random::new(if fuzz.is_some() { fresh } else { 1 });
+    let start = Instant::now();
+    let mut drawn = vec![0; SEEDS.len()];
+    let mut tries = 0;
+    while fuzz.map_or(tries < TRIES, |seconds| start.elapsed().as_secs_f64() < seconds) {
+        tries += 1;
+        for (seed, drawn) in SEEDS.iter().zip(&mut drawn) {
+            let mutated = folder.write(seed.name, mutated(seed, &mut random));
+            let file = seed.part_of.map_or(mutated, |scene| folder.path().join(scene));
+            let begun = Instant::now();
+            if let Ok(scene) = load(&file, &LoadOptions::default()) {
+                picture(&scene, 8, 8);
+                *drawn += 1;
+            }
+            let kept = folder.path().join(seed.name);
+            assert!(begun.elapsed() < Duration::from_secs(5), "{} takes {:?}", kept.display(), begun.elapsed());
+        }
+    }
+    for (seed, drawn) in SEEDS.iter().zip(drawn) {
+        // Nothing in a library is an error.
+        let least = if seed.part_of.is_some() { tries } else { 1 };
+        assert!((least..=tries).contains(&drawn), "{}: {drawn} of {tries} are valid", seed.name);
+    }
+}

@@ -1,0 +1,299 @@
+//! OBJ scenes with their material libraries: what they become, and how mistakes are told.
+
+use super::picture;
+use crate::temporary::Folder;
+use glam::{Vec2, Vec3};
+use raywalk::scene::material::{Alpha, Model};
+use raywalk::scene::texture::{Texture, Wrap};
+use raywalk::scene::{LoadOptions, Material, Scene, SceneError, load};
+
+fn load_obj(text: impl AsRef<[u8]>) -> Result<Scene, SceneError> {
+    load(&Folder::new().write("s.obj", text), &LoadOptions::default())
+}
+
+/// The materials of a library.
+fn load_mtl(text: &str) -> Scene {
+    let folder = Folder::new();
+    folder.write("s.mtl", text);
+    load(&folder.write("s.obj", "mtllib s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3"), &LoadOptions::default()).unwrap()
+}
+
+fn warnings(scene: &Scene) -> Vec<String> {
+    scene.warnings.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn every_statement_becomes_what_it_says() {
+    let folder = Folder::new();
+    folder.write("every_statement.mtl", include_str!("every_statement.mtl"));
+    let scene = load(&folder.write("s.obj", include_str!("every_statement.obj")), &LoadOptions::default()).unwrap();
+    assert_eq!(scene.format, "OBJ");
+    // The faces of an object with a material, one object for those with the same attributes.
+    let objects: Vec<(Option<&str>, &str)> = scene
+        .objects
+        .iter()
+        .map(|object| (object.name.as_deref(), &*scene.materials[object.material as usize].name))
+        .collect();
+    let first = Some("first");
+    let expected = [
+        (first, "brick"), // with texture coordinates and normals
+        (first, "brick"), // with normals
+        (first, "glass"),
+        (first, "brick"), // with texture coordinates, for want of a normal
+        (Some("second"), "brick"),
+    ];
+    assert_eq!(objects, expected);
+    assert!(scene.objects.iter().all(|object| object.kind == "mesh"));
+    assert_eq!(scene.geometry.len(), 2 + 3 + 1 + 1 + 1);
+    assert!(scene.headlight && scene.cameras.len() == 1);
+
+    let [brick, glass] = &scene.materials[..] else { panic!("two materials") };
+    let Model::Phong { ambient, diffuse, specular, shininess } = brick.model else { panic!("Phong's model") };
+    assert_eq!((ambient, diffuse), (Material::<u32>::AMBIENT, Vec3::ONE));
+    assert_eq!((specular, shininess), (Vec3::new(0.1, 0.2, 0.3), 20.0));
+    assert_eq!((brick.color.factor, brick.emission.factor), (Vec3::new(0.5, 0.25, 1.0), Vec3::new(0.0, 0.5, 0.0)));
+    assert_eq!((brick.reflectivity, brick.transparency), (Vec3::ZERO, Vec3::ZERO));
+    let lookup = brick.color.texture.unwrap();
+    assert_eq!(lookup.transform.transform_point2(Vec2::ONE), Vec2::splat(2.0));
+    let Texture::Image(image) = &scene.textures[lookup.texture as usize] else { panic!("an image") };
+    assert_eq!(image.sampler.wrap, [Wrap::Clamp; 2]);
+    assert_eq!(glass.color.factor, Vec3::new(1.0, 0.5, 1.0));
+    assert_eq!((glass.reflectivity, glass.transparency), (Vec3::splat(0.5), Vec3::splat(0.75)));
+    assert_eq!((glass.ior, glass.fresnel), (1.5, true));
+    assert_eq!(glass.relief.bump.unwrap().scale, 0.02);
+    assert_eq!(glass.relief.normal.unwrap().scale, 1.0);
+
+    let warnings = warnings(&scene);
+    let told = ["mtl:19:1: Pr is not drawn", "s.obj:32:1: points, lines and faces of fewer than 3 corners: 3 left out"];
+    for told in told.into_iter().chain(["missing.png", "heights.png", "normals.png"]) {
+        assert!(warnings.iter().any(|warning| warning.contains(told)), "{told}: {warnings:#?}");
+    }
+    assert_eq!(warnings.len(), 5, "{warnings:#?}");
+}
+
+#[test]
+fn vertices_are_shared_and_colours_follow_them() {
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0 0.5 0 0\nf 1 2 3 4\nf 4 3 2\n";
+    let scene = load_obj(text).unwrap();
+    assert_eq!(scene.geometry.len(), 3);
+    // Two of the triangles have the coloured corner.
+    let colors = vertex_colors(&scene).concat();
+    let red = Vec3::new(0.5, 0.0, 0.0);
+    assert_eq!((colors.len(), colors.iter().filter(|color| **color == red).count()), (9, 2));
+    assert_eq!(colors.iter().filter(|color| **color == Vec3::ONE).count(), 7);
+}
+
+/// The vertex colours of all triangles that have any.
+fn vertex_colors(scene: &Scene) -> Vec<[Vec3; 3]> {
+    scene.geometry.extras.iter().map(|(_, extras)| extras.colors.map(|color| color.truncate())).collect()
+}
+
+/// A wrong scene, the `§` where the error is, and words of its message.
+const WRONG: &[(&str, &str)] = &[
+    ("v 1 §x 3", "expected a number (position), found \"x\""),
+    ("v 1 2§\nv 1 2 3", "the line ends before position"),
+    ("v 1 2§", "the file ends before position"),
+    ("v §nan 0 0", "expected a number"),
+    ("v 0 -§inf 0", "expected a number"),
+    ("v 0 0 §1e39", "too large"),
+    ("vn 0 0 §", "ends before normal"),
+    ("vt §a", "expected a number"),
+    ("v 0 0 0\nv 0 0 1\nf 1 2 §3", "index 3 names none of the 2 positions given so far"),
+    ("v 0 0 0\nf 1 §0 1", "index 0 names none"),
+    ("v 0 0 0\nf 1 1 §-2", "index -2 names none"),
+    ("v 0 0 0\nf 1 §9223372036854775807 1", "names none"),
+    ("v 0 0 0\nf 1 §99999999999999999999 1", "expected a corner such as"),
+    ("v 0 0 0\nvt 0 0\nf 1 §1/2 1", "index 2 names none of the 1 texture coordinates"),
+    ("v 0 0 0\nvn 0 0 1\nf 1 §1//2 1", "index 2 names none of the 1 normals"),
+    ("v 0 0 0\nvt 0 0\nf 1 §/1 1", "expected a corner such as"),
+    ("v 0 0 0\nf 1 §1/// 1", "expected a corner such as"),
+    ("v 0 0 0\nf 1 §a 1", "expected a corner such as"),
+    ("f §1 2 3\nv 0 0 0", "index 1 names none of the 0 positions"),
+];
+
+#[test]
+fn every_wrong_scene_is_refused_with_its_place() {
+    for (text, says) in WRONG {
+        let text = text.replace("-§", "§-");
+        let (before, after) = text.split_once('§').unwrap();
+        let line = 1 + before.matches('\n').count();
+        let column = 1 + before.rsplit('\n').next().unwrap().chars().count();
+        let error = load_obj(format!("{before}{after}")).expect_err(&text);
+        let SceneError::Invalid { place, message } = &error else { panic!("{text}: {error}") };
+        assert!(message.contains(says), "{error}\n{text}");
+        assert_eq!(place.line_column, Some((line, column)), "{error}\n{text}");
+        assert!(!error.to_string().contains('\n'), "{error:?}");
+    }
+}
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+#[test]
+fn what_is_missing_is_warned_of_and_drawn_plainly() {
+    let scene = load_obj(format!("mtllib none.mtl\n{TRIANGLE}usemtl red\nf 1 2 3")).unwrap();
+    assert_eq!(scene.materials, [Material::default_phong()]);
+    let [warning] = &warnings(&scene)[..] else { panic!("{:?}", scene.warnings) };
+    assert!(warning.contains("s.obj:1:1: cannot read the materials of \"none.mtl\""), "{warning}");
+    let outside = load_obj(format!("mtllib ../../../../etc/passwd\n{TRIANGLE}f 1 2 3")).unwrap();
+    assert!(warnings(&outside)[0].contains("cannot read the materials"), "{:?}", outside.warnings);
+
+    let folder = Folder::new();
+    folder.write("a.mtl", "newmtl red\nKd 1 0 0");
+    folder.write("b c.mtl", "newmtl blue\nKd 0 0 1");
+    let text =
+        format!("mtllib a.mtl\nmtllib b c.mtl\n{TRIANGLE}usemtl rde\nf 1 2 3\nusemtl blue\nf 1 2 3\nusemtl\nf 1 2 3");
+    let scene = load(&folder.write("s.obj", text), &LoadOptions::default()).unwrap();
+    let names: Vec<&str> = scene.objects.iter().map(|o| &*scene.materials[o.material as usize].name).collect();
+    assert_eq!(names, ["", "blue", ""]);
+    let [warning] = &warnings(&scene)[..] else { panic!("{:?}", scene.warnings) };
+    assert!(warning.contains("s.obj:6:1: no material is called \"rde\"") && warning.contains("red"), "{warning}");
+    let both = load(
+        &folder.write("s.obj", format!("mtllib a.mtl a.mtl\n{TRIANGLE}usemtl red\nf 1 2 3")),
+        &LoadOptions::default(),
+    );
+    assert_eq!(both.unwrap().materials[0].color.factor, Vec3::X);
+}
+
+#[test]
+fn corners_may_name_normals_where_there_are_none() {
+    let scene = load_obj(format!("{TRIANGLE}f 1/1/1 2/2/2 3/3/3\nf 1//7 2//7 3//7")).unwrap();
+    assert_eq!(scene.geometry.len(), 2);
+    let told: Vec<String> = warnings(&scene);
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told[0].contains("s.obj:4:3: a face names texture coordinates, but none are given"), "{told:?}");
+}
+
+#[test]
+fn materials_follow_their_statements() {
+    let one = |text: &str| load_mtl(&format!("newmtl m\n{text}")).materials.swap_remove(0);
+    let plain = one("");
+    assert_eq!((plain.color.factor, plain.transparency, plain.ior), (Vec3::ONE, Vec3::ZERO, 1.0));
+    let Model::Phong { specular, .. } = plain.model else { panic!("Phong's model") };
+    assert_eq!(specular, Vec3::ZERO);
+    assert_eq!(one("Tr 0.25").transparency, Vec3::splat(0.25));
+    assert_eq!(one("Tr 1").transparency, Vec3::ZERO, "nothing would be seen");
+    assert_eq!(one("Tr 1\nd 0.5").transparency, Vec3::splat(0.5), "d outranks Tr");
+    assert_eq!(one("d -halo 0.5").transparency, Vec3::splat(0.5));
+    assert_eq!(one("d 7").transparency, Vec3::ZERO);
+    assert_eq!(one("Tf 0 1 0").color.factor, Vec3::ONE, "Tf colours what is transparent");
+    assert_eq!(one("Ks 2 0.5 0\nillum 3").reflectivity, Vec3::new(1.0, 0.5, 0.0));
+    assert_eq!(one("KD 0.5").color.factor, Vec3::splat(0.5));
+    assert_eq!(one("map_Ke a.png").emission.factor, Vec3::ONE);
+    assert!(one("map_Bump -bm 0.5 wall_normal.png").relief.normal.is_some_and(|map| map.scale == 0.5));
+    assert!(one("map_Bump wall.png").relief.bump.is_some());
+}
+
+#[test]
+fn odd_libraries_are_warned_of() {
+    let scene = load_mtl(
+        "Kd 1 1 1\nnewmtl a\nKd 1 x 1\nKs -1 0 0\nKd spectral a.rfl\nNs\nmap_Kd\nmap_Ks a.png\nmap_Ks b.png\nillum two",
+    );
+    let told = [
+        "s.mtl:1:1: Kd stands before the first newmtl",
+        "s.mtl:3:6: expected a number (green), found \"x\"; it is left out",
+        "s.mtl:4:1: Ks is below 0; it is left out",
+        "s.mtl:5:4: expected a number (red), found \"spectral\"; it is left out",
+        "s.mtl:6:3: the line ends before Ns; it is left out",
+        "s.mtl:7:1: map_Kd names no file; it is left out",
+        "s.mtl:8:1: map_Ks is not drawn",
+        "s.mtl:10:7: expected a number (illum), found \"two\"; it is left out",
+    ];
+    let warnings = warnings(&scene);
+    assert_eq!(warnings.len(), told.len(), "{warnings:#?}");
+    for (warning, told) in warnings.iter().zip(told) {
+        assert!(warning.contains(told), "{warning}");
+    }
+}
+
+#[test]
+fn images_are_found_by_paths_of_other_machines() {
+    let folder = Folder::new();
+    let image = image::RgbImage::from_pixel(2, 2, image::Rgb([255, 0, 0]));
+    image.save(folder.write("maps/red.png", "")).unwrap();
+    image.save(folder.write("blue.png", "")).unwrap();
+    folder.write(
+        "s.mtl",
+        "newmtl a\nmap_Kd maps\\red.png\nnewmtl b\nmap_Kd C:\\Users\\me\\blue.png\nnewmtl c\nmap_Kd /home/me/blue.png",
+    );
+    let scene =
+        load(&folder.write("s.obj", format!("mtllib s.mtl\n{TRIANGLE}usemtl a\nf 1 2 3")), &LoadOptions::default())
+            .unwrap();
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    assert_eq!(scene.textures.len(), 2);
+    assert!(picture(&scene, 16, 9).iter().any(|[red, green, blue]| *red > 100 && *green < 20 && *blue < 20));
+}
+
+#[test]
+fn what_an_opacity_map_leaves_out_is_not_there() {
+    let folder = Folder::new();
+    // The lower half is left out; the map of it is larger than the colours.
+    let holes = image::GrayImage::from_fn(1, 4, |_, y| image::Luma([if y < 2 { 255 } else { 0 }]));
+    holes.save(folder.write("holes.png", "")).unwrap();
+    let colors = image::RgbImage::from_pixel(2, 2, image::Rgb([0, 255, 0]));
+    colors.save(folder.write("green.png", "")).unwrap();
+    let both = image::RgbaImage::from_fn(1, 4, |_, y| image::Rgba([0, 255, 0, if y < 2 { 255 } else { 0 }]));
+    both.save(folder.write("both.png", "")).unwrap();
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4";
+    let obj = folder.write("s.obj", format!("mtllib s.mtl\n{square}"));
+    let seen = |library: &str| {
+        folder.write("s.mtl", format!("newmtl a\nKd 0 1 0\n{library}"));
+        let scene = load(&obj, &LoadOptions::default()).unwrap();
+        (scene.materials[0].alpha, picture(&scene, 64, 64).iter().filter(|[_, green, _]| *green > 40).count())
+    };
+    let (alpha, whole) = seen("map_Kd green.png");
+    assert_eq!(alpha, Alpha::Opaque);
+    for library in ["map_Kd green.png\nmap_d holes.png", "map_d holes.png", "map_Kd both.png\nmap_d both.png"] {
+        let (alpha, rest) = seen(library);
+        assert_eq!(alpha, Alpha::Mask(0.5), "{library}");
+        assert!((whole * 4 / 10..whole * 6 / 10).contains(&rest), "{library}: {rest} of {whole}");
+    }
+    assert_eq!(seen("map_Kd green.png\nmap_d none.png").0, Alpha::Opaque);
+}
+
+#[test]
+fn a_missing_image_is_shown_as_magenta_squares() {
+    let folder = Folder::new();
+    folder.write("s.mtl", "newmtl a\nmap_Kd none.png\n");
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4";
+    let scene = load(&folder.write("s.obj", format!("mtllib s.mtl\n{square}")), &LoadOptions::default()).unwrap();
+    assert!(picture(&scene, 32, 18).iter().any(|[red, green, blue]| *red > 100 && *green < 20 && *blue > 100));
+}
+
+/// A Zstandard frame of one raw block (RFC 8878) that holds a text shorter than 256 bytes.
+fn frame(text: &str) -> Vec<u8> {
+    let length = text.len() as u8;
+    let block = (u32::from(length) << 3 | 1).to_le_bytes();
+    [&[0x28, 0xB5, 0x2F, 0xFD, 0x20, length][..], &block[..3], text.as_bytes()].concat()
+}
+
+#[test]
+fn compressed_files_are_read_within_the_limit() {
+    let folder = Folder::new();
+    let text = format!("{TRIANGLE}f 1 2 3");
+    let file = folder.write("s.obj.zst", frame(&text));
+    let scene = load(&file, &LoadOptions::default()).unwrap();
+    assert_eq!((scene.format, scene.geometry.len()), ("OBJ", 1));
+    let error = load(&folder.write("s.obj.zst", frame("v 1 x")), &LoadOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("s.obj.zst:1:5: expected a number"), "{error}");
+    let cut = load(&folder.write("s.obj.zst", &frame(&text)[..20]), &LoadOptions::default()).unwrap_err().to_string();
+    assert!(cut.contains("cannot expand the file"), "{cut}");
+    // A thousand blocks that repeat a blank 131,072 times each.
+    let block = (131_072_u32 << 3 | 0b010).to_le_bytes();
+    let bomb = [&[0x28, 0xB5, 0x2F, 0xFD, 0x00, 0x38][..], &[&block[..3], b" "].concat().repeat(1000)].concat();
+    let mut options = LoadOptions::default();
+    options.limits.set("file-bytes", "1000000").unwrap();
+    let error = load(&folder.write("s.obj.zst", bomb), &options).unwrap_err().to_string();
+    assert!(error.contains("limit file-bytes of 1000000"), "{error}");
+}
+
+#[test]
+fn limits_hold_before_memory_is_taken() {
+    let groups = format!("{TRIANGLE}{}", "g\nf 1 2 3\n".repeat(20));
+    let fan = format!("{TRIANGLE}f {}", "1 2 3 ".repeat(10));
+    for (limit, text) in [("objects", groups), ("primitives", fan)] {
+        let mut options = LoadOptions::default();
+        options.limits.set(limit, "10").unwrap();
+        let error = load(&Folder::new().write("s.obj", text), &options).unwrap_err().to_string();
+        assert!(error.contains(&format!("limit {limit} of 10")), "{error}");
+    }
+}
