@@ -13,6 +13,10 @@ pub struct Limits {
     pub objects: u64,
     /// Primitives: triangles, spheres and the like.
     pub primitives: u64,
+    /// Nodes of a model's tree.
+    pub nodes: u64,
+    /// Vertices and indices read from all meshes together.
+    pub vertices: u64,
     /// Levels of objects and lists within each other in a scene file.
     pub nesting: u64,
     /// Width and height of the picture that a scene may ask for.
@@ -66,6 +70,20 @@ const ROWS: &[Row] = &[
         ceiling: u32::MAX as u64 - 1,
         field: |l| &mut l.primitives,
     },
+    Row {
+        name: "nodes",
+        help: "nodes of a model's tree",
+        default: 1_000_000,
+        ceiling: u32::MAX as u64 - 1,
+        field: |l| &mut l.nodes,
+    },
+    Row {
+        name: "vertices",
+        help: "vertices and indices read from meshes",
+        default: 1 << 26,
+        ceiling: u32::MAX as u64 - 1,
+        field: |l| &mut l.vertices,
+    },
     Row { name: "nesting", help: "levels of nesting", default: 128, ceiling: 256, field: |l| &mut l.nesting },
     Row {
         name: "picture-edge",
@@ -84,6 +102,8 @@ impl Default for Limits {
             texture_edge: 0,
             objects: 0,
             primitives: 0,
+            nodes: 0,
+            vertices: 0,
             nesting: 0,
             picture_edge: 0,
         };

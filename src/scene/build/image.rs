@@ -65,6 +65,12 @@ impl ImageStore {
         Self { files, decoded, embedded, bytes_left: limits.texture_bytes, limits: limits.clone() }
     }
 
+    /// The contents of a file that the scene names, which need not be an image.
+    pub fn read_file(&mut self, name: &str) -> Result<Cow<'static, [u8]>, FileError> {
+        let path = self.files.locate(name)?;
+        self.files.read(&path)
+    }
+
     /// The texels of images, in the same order.
     ///
     /// # Errors

@@ -14,7 +14,7 @@ use super::desc::map::shortened;
 use super::desc::problem::{At, Outcome, Problem, Warnings};
 use super::desc::{ImageDesc, MaterialDesc, NameRef, SceneDesc, TextureDesc, TextureKind, hint};
 use super::error::Warning;
-use super::files::Files;
+use super::files::{FileError, Files};
 use super::limits::Limits;
 use super::material::Encoding;
 use super::texture::ImageTexture;
@@ -23,6 +23,7 @@ use crate::geometry::{Geometry, Part};
 use glam::Vec3;
 use image::ImageStore;
 use placement::Placement;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -72,6 +73,14 @@ impl SceneBuilder {
     /// What the scene may ask of the machine.
     pub fn limits(&self) -> &Limits {
         &self.limits
+    }
+
+    /// The contents of a file that the scene names.
+    ///
+    /// # Errors
+    /// As for [`Files::locate`] and [`Files::read`].
+    pub fn read_file(&mut self, name: &str) -> Result<Cow<'static, [u8]>, FileError> {
+        self.images.read_file(name)
     }
 
     /// Adds warnings that have found their place.

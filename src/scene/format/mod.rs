@@ -1,5 +1,6 @@
 //! Scene files by format: one row a format, one reader a row.
 
+mod gltf;
 mod json;
 mod place;
 
@@ -37,7 +38,10 @@ pub struct Format {
 }
 
 /// Every format.
-pub const FORMATS: &[Format] = &[Format { name: "JSON", extensions: &["json"], read: json::read }];
+pub const FORMATS: &[Format] = &[
+    Format { name: "JSON", extensions: &["json"], read: json::read },
+    Format { name: "glTF", extensions: &["gltf", "glb"], read: gltf::read },
+];
 
 /// Loads a scene from a file; its format is known by its extension.
 ///
