@@ -18,7 +18,7 @@ pub fn random_point(state: &mut u64) -> Vec3 {
 }
 
 fn parts(shapes: impl Iterator<Item = Shape>) -> Vec<Part> {
-    let part = |(shape, primitive)| Part { shape, id: PrimitiveId { object: 0, primitive }, attributes: None };
+    let part = |(shape, primitive)| Part::new(shape, PrimitiveId { object: 0, primitive });
     shapes.zip(0..).map(part).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Laws that every type of primitive keeps, whatever its size and place; they walk the list of types.
 
-use super::primitive::{Cone, Disk, HIT_PADDING, Kernel, Plane, Sphere, Triangle, for_each_primitive};
+use super::primitive::{Cone, Cutout, Disk, HIT_PADDING, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use super::*;
 use crate::math::random::SplitMix64;
 use crate::math::{SimdToken, V3, dispatch};
@@ -39,7 +39,7 @@ fn shape(kind: PrimitiveKind, random: &mut Random, center: DVec3, size: f64, thi
         PrimitiveKind::Sphere => Shape::Sphere { center: point(center), radius: size as f32 },
         PrimitiveKind::Plane => Shape::Plane { point: point(center), normal },
         PrimitiveKind::Disk => Shape::Disk { center: point(center), normal, radius: size as f32 },
-        PrimitiveKind::Triangle => {
+        PrimitiveKind::Triangle | PrimitiveKind::Cutout => {
             let (from, to) = (center - a * size, center + a * size);
             Shape::Triangle {
                 vertices: [from, to, from.lerp(to, random.within(0.0, 1.0)) + b * size * thin].map(point),
@@ -57,7 +57,7 @@ fn shape(kind: PrimitiveKind, random: &mut Random, center: DVec3, size: f64, thi
 fn geometry(shapes: impl IntoIterator<Item = Shape>) -> Geometry {
     let part = |(i, shape): (usize, Shape)| {
         let id = PrimitiveId { object: i as u32, primitive: 0 };
-        Part { shape, id, attributes: None }
+        Part::new(shape, id)
     };
     Geometry::build(shapes.into_iter().enumerate().map(part).collect())
 }

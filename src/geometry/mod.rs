@@ -7,6 +7,7 @@ pub mod aabb;
 pub mod beam;
 pub mod block;
 pub mod bvh;
+pub mod holes;
 #[cfg(test)]
 mod laws;
 pub mod packet;
@@ -19,15 +20,16 @@ pub mod visitor;
 
 pub use aabb::Aabb;
 pub use block::{BLOCK, Block, NO_PRIMITIVE, PrimitiveIndex};
+pub use holes::{HoleMap, Holes, Wrap};
 pub use packet::Packet;
 pub use ray::Rays;
-pub use shape::{Part, PrimitiveId, Shape, VertexAttributes};
+pub use shape::{Part, PrimitiveId, Shape, VertexAttributes, VertexExtras};
 pub use traverse::{Search, SphereTerms, Stack};
 pub use visitor::{AnyHit, ClosestHit, NextCrossing, Opaque, Visitor};
 
 use bvh::{Bvh, LeafMembers};
 use glam::Vec3;
-use primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
+use primitive::{Cone, Cutout, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use rayon::prelude::*;
 
 /// Where a primitive lies: its type, its block and its place there.
@@ -65,6 +67,12 @@ macro_rules! define_geometry {
             /// What the corners of triangles carry, in the kernel's order of corners, for those primitives that carry
             /// anything. Sorted by primitive.
             pub attributes: Vec<(PrimitiveIndex, VertexAttributes)>,
+            /// What the corners of few triangles carry besides, in the same order.
+            pub extras: Vec<(PrimitiveIndex, VertexExtras)>,
+            /// The holes of cut-out triangles, by block and place.
+            pub holes: Vec<Holes>,
+            /// The maps that holes are found on.
+            pub hole_maps: Vec<HoleMap>,
             /// Finite bounds of everything but planes; empty if there is nothing finite.
             pub bounds: Aabb,
             /// The tree, where the scene is worth one.
@@ -104,6 +112,8 @@ macro_rules! define_geometry {
                     + self.ids.capacity() * size_of::<PrimitiveId>()
                     + self.slots.capacity() * size_of::<Slot>()
                     + self.attributes.capacity() * size_of::<(PrimitiveIndex, VertexAttributes)>()
+                    + self.extras.capacity() * size_of::<(PrimitiveIndex, VertexExtras)>()
+                    + self.holes.capacity() * size_of::<Holes>()
                     + self.bvh.as_ref().map_or(0, Bvh::bytes)
             }
 
@@ -159,17 +169,24 @@ impl PrimitiveKind {
     /// Whether a primitive of this type lies in a plane.
     #[inline(always)]
     pub fn is_flat(self) -> bool {
-        matches!(self, Self::Triangle | Self::Plane | Self::Disk)
+        matches!(self, Self::Triangle | Self::Cutout | Self::Plane | Self::Disk)
+    }
+
+    /// Whether a primitive of this type has three corners, which may carry something.
+    #[inline(always)]
+    pub fn is_triangle(self) -> bool {
+        matches!(self, Self::Triangle | Self::Cutout)
     }
 }
 
 impl Packed {
     /// Packs a shape; `None` where it has no extent.
-    fn new(shape: &Shape) -> Option<Self> {
-        Some(match *shape {
+    fn new(part: &Part) -> Option<Self> {
+        Some(match part.shape {
             Shape::Sphere { center, radius } => Self::Sphere(Sphere::fields(center, radius)),
             Shape::Plane { point, normal } => Self::Plane(Plane::fields(point, normal)),
             Shape::Triangle { vertices } if Triangle::is_degenerate(vertices) => return None,
+            Shape::Triangle { vertices } if part.holes.is_some() => Self::Cutout(Triangle::fields(vertices)),
             Shape::Triangle { vertices } => Self::Triangle(Triangle::fields(vertices)),
             Shape::Disk { center, normal, radius } => Self::Disk(Disk::fields(center, normal, radius)),
             Shape::Cone { base, top, .. } if base == top => return None,
@@ -188,9 +205,7 @@ impl Geometry {
     /// those without extent are dropped and counted.
     pub fn build(parts: Vec<Part>) -> Self {
         let mut geometry = Self::default();
-        let packed = geometry.pack(&parts);
-        // The largest array here is not needed while the tree is built.
-        drop(parts);
+        let (packed, holes) = geometry.pack(parts);
         let unplaced = Slot { kind: PrimitiveKind::Plane, block: u32::MAX, place: 0 };
         geometry.slots = vec![unplaced; packed.len()];
 
@@ -206,25 +221,34 @@ impl Geometry {
         }
         leaves.extend(planes.chunks(BLOCK).map(|members| LeafMembers::new(PrimitiveKind::Plane, members)));
         geometry.fill_blocks(leaves, &packed);
+        geometry.holes = vec![Holes::default(); geometry.cutouts.len() * BLOCK];
+        for (primitive, holes) in holes {
+            let slot = geometry.slots[primitive as usize];
+            geometry.holes[slot.block as usize * BLOCK + usize::from(slot.place)] = holes;
+        }
         geometry.bvh = bvh.filter(|bvh| bvh.leaves >= MIN_BLOCKS_FOR_TREE);
         geometry
     }
 
-    /// Packs parts and keeps what else is to be known of them.
-    fn pack(&mut self, parts: &[Part]) -> Vec<Packed> {
-        let packed: Vec<Option<Packed>> = parts.par_iter().map(|part| Packed::new(&part.shape)).collect();
+    /// Packs parts and keeps what else is to be known of them. The holes wait for their places.
+    fn pack(&mut self, parts: Vec<Part>) -> (Vec<Packed>, Vec<(PrimitiveIndex, Holes)>) {
+        let packed: Vec<Option<Packed>> = parts.par_iter().map(Packed::new).collect();
+        let mut holes = Vec::new();
         let kept = packed.iter().flatten().count();
         self.dropped = parts.len() - kept;
         self.ids.reserve_exact(kept);
-        for (part, _) in parts.iter().zip(&packed).filter(|(_, packed)| packed.is_some()) {
-            if let (Some(attributes), Shape::Triangle { vertices }) = (part.attributes, part.shape) {
-                let stored = attributes.reordered(Triangle::stored_order(vertices));
-                self.attributes.push((self.ids.len() as u32, stored));
+        for (part, _) in parts.into_iter().zip(&packed).filter(|(_, packed)| packed.is_some()) {
+            if let Shape::Triangle { vertices } = part.shape {
+                let (index, order) = (self.ids.len() as u32, Triangle::stored_order(vertices));
+                self.attributes.extend(part.attributes.map(|attributes| (index, attributes.reordered(order))));
+                self.extras.extend(part.extras.map(|extras| (index, extras.reordered(order))));
+                holes.extend(part.holes.map(|holes| (index, holes.reordered(order))));
             }
             self.ids.push(part.id);
         }
         self.attributes.shrink_to_fit();
-        packed.into_iter().flatten().collect()
+        self.extras.shrink_to_fit();
+        (packed.into_iter().flatten().collect(), holes)
     }
 
     /// How many primitives there are.
@@ -243,8 +267,8 @@ impl Geometry {
         let slot = self.slots[primitive as usize];
         let (block, place) = (slot.block as usize, usize::from(slot.place));
         match slot.kind {
-            PrimitiveKind::Triangle => {
-                let [ax, ay, az, bx, by, bz, cx, cy, cz, _] = self.triangles[block].get(place);
+            PrimitiveKind::Triangle | PrimitiveKind::Cutout => {
+                let [ax, ay, az, bx, by, bz, cx, cy, cz, _] = self.triangles_of(slot.kind)[block].get(place);
                 let [a, b, c] = [Vec3::new(ax, ay, az), Vec3::new(bx, by, bz), Vec3::new(cx, cy, cz)];
                 let normal = (b - a).cross(c - a);
                 let usable = f32::MIN_POSITIVE..f32::MAX;
@@ -261,6 +285,12 @@ impl Geometry {
             }
             PrimitiveKind::Sphere | PrimitiveKind::Cone => None,
         }
+    }
+
+    /// Blocks of a type of triangles.
+    #[inline(always)]
+    pub fn triangles_of(&self, kind: PrimitiveKind) -> &[Block<10>] {
+        if kind == PrimitiveKind::Cutout { &self.cutouts } else { &self.triangles }
     }
 
     /// Largest magnitude of any coordinate of anything finite.

@@ -1,6 +1,7 @@
 //! Shapes as scene building hands them over, before they are sorted into kernels' arrays.
 
-use glam::{Vec2, Vec3};
+use super::Holes;
+use glam::{Vec2, Vec3, Vec4};
 
 /// What a hit names: the leaf object, and the primitive within it, both as counted in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -66,13 +67,36 @@ pub struct VertexAttributes {
 
 impl VertexAttributes {
     /// With the corners taken in another order.
-    pub(super) fn reordered(self, order: [usize; 3]) -> Self {
+    pub fn reordered(self, order: [usize; 3]) -> Self {
         Self { normals: self.normals.map(|n| order.map(|i| n[i])), uvs: self.uvs.map(|uv| order.map(|i| uv[i])) }
     }
 }
 
-/// One shape with its identity. Several parts may share an identity (the two triangles of a rectangle).
+/// What corners carry besides, of the few triangles that carry more.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VertexExtras {
+    /// Second texture coordinates.
+    pub uvs1: [Vec2; 3],
+    /// Linear colours with opacity, which multiply the material's.
+    pub colors: [Vec4; 3],
+    /// Unit directions along which u grows, and the sign of that along which v grows; 0 where they follow from the
+    /// texture coordinates.
+    pub tangents: [Vec4; 3],
+}
+
+impl VertexExtras {
+    /// With the corners taken in another order.
+    pub fn reordered(self, order: [usize; 3]) -> Self {
+        Self {
+            uvs1: order.map(|i| self.uvs1[i]),
+            colors: order.map(|i| self.colors[i]),
+            tangents: order.map(|i| self.tangents[i]),
+        }
+    }
+}
+
+/// One shape with its identity. Several parts may share an identity (the two triangles of a rectangle).
+#[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// The shape in world space.
     pub shape: Shape,
@@ -80,4 +104,15 @@ pub struct Part {
     pub id: PrimitiveId,
     /// Corner data, triangles only.
     pub attributes: Option<VertexAttributes>,
+    /// More corner data, triangles only.
+    pub extras: Option<Box<VertexExtras>>,
+    /// Where there are holes in it, triangles only.
+    pub holes: Option<Box<Holes>>,
+}
+
+impl Part {
+    /// A shape whose corners carry nothing.
+    pub fn new(shape: Shape, id: PrimitiveId) -> Self {
+        Self { shape, id, attributes: None, extras: None, holes: None }
+    }
 }

@@ -4,7 +4,7 @@
 //! with the same kernels, so the same hits.
 
 use super::bvh::{Bvh, Child, Leaf, Node};
-use super::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
+use super::primitive::{Cone, Cutout, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use super::traverse::{Pending, STACK};
 use super::{BLOCK, Block, Packet, PrimitiveKind, Rays, Search, SphereTerms, Visitor};
 use fearless_simd::prelude::*;
@@ -125,9 +125,14 @@ macro_rules! test {
             }
         }
     };
-    ($kernel:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $ray:ident, $t_min:ident) => {
-        $kernel::intersect(&$search.geometry.$blocks[$block].load($simd), &$ray.rays, $t_min)
-    };
+    ($kernel:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $ray:ident, $t_min:ident) => {{
+        let fields = $search.geometry.$blocks[$block].load($simd);
+        let (mut mask, t) = $kernel::intersect(&fields, &$ray.rays, $t_min);
+        if $kernel::HAS_HOLES {
+            mask = $search.geometry.meets_no_hole(&fields, &$ray.rays, mask, $block, |place| place);
+        }
+        (mask, t)
+    }};
 }
 
 macro_rules! define_leaf_tests {

@@ -1,7 +1,7 @@
 //! The one traversal: closest hits, occluders and transparent crossings all go through it.
 
 use super::bvh::{Bvh, Child, Leaf, WIDTH};
-use super::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
+use super::primitive::{Cone, Cutout, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use super::visitor::Mask;
 use super::{Block, Geometry, Packet, PrimitiveIndex, PrimitiveKind, Rays, Visitor};
 use crate::math::V3;
@@ -181,7 +181,11 @@ macro_rules! test_place {
     };
     ($kernel:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $place:ident, $rays:expr, $t_min:ident) => {{
         let fields = $search.geometry.$blocks[$block].splat($simd, $place);
-        $kernel::intersect(&fields, $rays, $t_min)
+        let (mut mask, t) = $kernel::intersect(&fields, $rays, $t_min);
+        if $kernel::HAS_HOLES {
+            mask = $search.geometry.meets_no_hole(&fields, $rays, mask, $block, |_| $place);
+        }
+        (mask, t)
     }};
 }
 pub(super) use test_place;

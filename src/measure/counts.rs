@@ -30,7 +30,8 @@ impl SceneCounts {
             scene.objects.capacity() * size_of::<Object>() + scene.materials.capacity() * size_of::<Material>();
         Self {
             scene_bytes: (scene.geometry.bytes() + texels + tables) as u64,
-            triangles: scene.geometry.count(PrimitiveKind::Triangle) as u64,
+            triangles: (scene.geometry.count(PrimitiveKind::Triangle) + scene.geometry.count(PrimitiveKind::Cutout))
+                as u64,
             spheres: scene.geometry.count(PrimitiveKind::Sphere) as u64,
             primitives: scene.geometry.len() as u64,
             lights: (scene.lights.len() + usize::from(scene.headlight)) as u64,

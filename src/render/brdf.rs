@@ -3,6 +3,7 @@
 
 use super::frame::Frame;
 use super::materials::Materials;
+use super::skin::Skin;
 use super::tables::Row;
 use crate::math::V3;
 use crate::math::power::pow;
@@ -50,9 +51,10 @@ impl<S: Simd> Reflectance<S> {
         simd: S,
         frame: &Frame<'_>,
         materials: &impl Materials<S>,
-        color: V3<S::f32s>,
+        skin: &Skin<S>,
         opacity: V3<S::f32s>,
     ) -> Self {
+        let color = skin.color;
         let some_metallic = frame.plan.metallic_roughness && materials.any(|m| m.metallic_roughness);
         let some_phong = !some_metallic || materials.any(|m| !m.metallic_roughness);
         let mut phong = None;
@@ -70,8 +72,7 @@ impl<S: Simd> Reflectance<S> {
         }
         let mut metallic_roughness = None;
         if some_metallic {
-            let metallic = materials.row(simd, Row::Metallic as usize);
-            let roughness = materials.row(simd, Row::Roughness as usize);
+            let Skin { metallic, roughness, .. } = *skin;
             metallic_roughness = Some(MetallicRoughness { color, opacity, metallic, roughness });
         }
         Self { phong, metallic_roughness }

@@ -158,6 +158,8 @@ pub(super) struct Frame<'a> {
     /// Half of the picture's width and height at unit distance.
     pub half_picture: [f32; 2],
     pub beam_margin: f32,
+    /// How wide a pixel is at unit distance.
+    pub pixel_spread: f32,
     pub lights: &'a [Light],
     /// Ambient light of the scene.
     pub ambient: Vec3,
@@ -233,6 +235,7 @@ pub fn render_frame(
         projection: Projection::new(view.eye, axes, false, scene.geometry.reach(), *beam_margin),
         half_picture: [view.right.length(), view.up.length()],
         beam_margin: *beam_margin,
+        pixel_spread: 2.0 * view.up.length() / film.height() as f32,
         lights: if scene.headlight { &headlight } else { &scene.lights },
         ambient: scene.render.ambient,
         sphere_terms: match plan.sphere_cache {

@@ -7,8 +7,12 @@
 use super::frame::Frame;
 use super::materials::{Materials, MixedMaterials};
 use super::queue::MOST_LANES;
-use super::tables::Row;
-use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, SurfacePoint, Triangle, for_each_primitive};
+use super::skin::Skin;
+use super::tables::{FlatMaterial, Row};
+use super::texture_place::Sight;
+use crate::geometry::primitive::{
+    Cone, Cutout, Disk, Kernel, Plane, Sphere, SurfacePoint, Triangle, for_each_primitive,
+};
 use crate::geometry::{BLOCK, Block, Geometry, NO_PRIMITIVE, PrimitiveIndex, PrimitiveKind, Rays, Slot};
 use crate::math::V3;
 use fearless_simd::Simd;
@@ -94,8 +98,36 @@ pub(super) struct Surfaces<S: Simd> {
     pub shading_normal: V3<S::f32s>,
     /// Weights of a triangle's corners in the kernel's order; only where the plan interpolates.
     pub weights: [S::f32s; 3],
+    /// From a triangle's first corner, in the kernel's order, to the second and third; as the weights.
+    pub edges: [V3<S::f32s>; 2],
     /// Bit set of the lanes whose primitive is flat.
     pub flat: u64,
+}
+
+impl<S: Simd> Surfaces<S> {
+    /// A number that corners carry, where the rays hit.
+    #[inline(always)]
+    pub fn blend(&self, corners: [S::f32s; 3]) -> S::f32s {
+        let [u, v, w] = self.weights;
+        corners[0] * u + corners[1] * v + corners[2] * w
+    }
+
+    /// Four numbers that corners carry, corner by corner.
+    #[inline(always)]
+    pub fn blend_four(&self, corners: &[S::f32s; 12]) -> [S::f32s; 4] {
+        let mut blended = [corners[0]; 4];
+        for (channel, blended) in blended.iter_mut().enumerate() {
+            *blended = self.blend([corners[channel], corners[channel + 4], corners[channel + 8]]);
+        }
+        blended
+    }
+
+    /// The lanes that hit triangles; only where the plan interpolates.
+    #[inline(always)]
+    pub fn is_triangle(&self, simd: S) -> Mask<S> {
+        let [u, v, w] = self.weights;
+        (u + v + w).simd_gt(S::f32s::splat(simd, 0.5))
+    }
 }
 
 /// The surfaces at distances `t`, of one primitive or of several.
@@ -132,11 +164,13 @@ pub(super) fn surfaces_of_one<S: Simd>(
         point,
         shading_normal: point.normal,
         weights: [S::f32s::splat(simd, 0.0); 3],
+        edges: [V3::zero(simd); 2],
         flat: if slot.kind.is_flat() { hits.active } else { 0 },
     };
-    if frame.plan.vertex_attributes && slot.kind == PrimitiveKind::Triangle {
-        let fields = geometry.triangles[slot.block as usize].splat(simd, slot.place.into());
+    if frame.plan.vertex_attributes && slot.kind.is_triangle() {
+        let fields = geometry.triangles_of(slot.kind)[slot.block as usize].splat(simd, slot.place.into());
         surfaces.weights = Triangle::barycentric(&fields, &Rays::new(origin, direction));
+        surfaces.edges = Triangle::edges(&fields);
         interpolate_normals(simd, frame, hits, &mut surfaces);
     }
     surfaces
@@ -155,7 +189,13 @@ pub(super) fn surfaces_of_several<S: Simd>(
     let geometry = &frame.scene.geometry;
     let zero = S::f32s::splat(simd, 0.0);
     let blank = SurfacePoint { position: V3::all(zero), normal: V3::all(zero), scale: zero };
-    let mut surfaces = Surfaces { point: blank, shading_normal: V3::all(zero), weights: [zero; 3], flat: 0 };
+    let mut surfaces = Surfaces {
+        point: blank,
+        shading_normal: V3::all(zero),
+        weights: [zero; 3],
+        edges: [V3::all(zero); 2],
+        flat: 0,
+    };
     let places = Places::new(geometry, hits);
     let mut left = hits.active;
     while left != 0 {
@@ -178,9 +218,16 @@ pub(super) fn surfaces_of_several<S: Simd>(
                 scale: mask.select(part.scale, surfaces.point.scale),
             };
         }
-        if frame.plan.vertex_attributes && kind == PrimitiveKind::Triangle {
-            let fields = group.fields(simd, lanes, &geometry.triangles);
-            surfaces.weights = Triangle::barycentric(&fields, &Rays::new(origin, direction));
+        if frame.plan.vertex_attributes && kind.is_triangle() {
+            let fields = group.fields(simd, lanes, geometry.triangles_of(kind));
+            let mask = Mask::<S>::from_bitmask(simd, lanes);
+            let weights = Triangle::barycentric(&fields, &Rays::new(origin, direction));
+            for (known, found) in surfaces.weights.iter_mut().zip(weights) {
+                *known = mask.select(found, *known);
+            }
+            for (known, found) in surfaces.edges.iter_mut().zip(Triangle::edges(&fields)) {
+                *known = V3::select(mask, found, *known);
+            }
         }
     }
     surfaces.shading_normal = surfaces.point.normal;
@@ -346,11 +393,16 @@ pub(super) fn transmission<S: Simd>(
         return one;
     }
     let materials = MixedMaterials::new(simd, frame, &hits);
-    let mut color = materials.triple(simd, Row::Color);
-    if frame.plan.textures && materials.any(|m| m.color_texture.is_some()) {
-        let surfaces = surfaces(simd, frame, &hits, origin, direction, t);
-        materials.look_up(simd, frame, &hits, &surfaces, &mut color, &mut V3::zero(simd));
-    }
     let crossed = Mask::<S>::from_bitmask(simd, hits.active);
-    V3::select(crossed, materials.triple(simd, Row::Transparency) * color, one)
+    let transparency = materials.triple(simd, Row::Transparency);
+    let varies = frame.plan.vertex_colors || frame.plan.textures && materials.any(FlatMaterial::is_textured);
+    if !varies && !frame.plan.blending {
+        return V3::select(crossed, transparency * materials.triple(simd, Row::Color), one);
+    }
+    let surfaces = surfaces(simd, frame, &hits, origin, direction, t);
+    let skin = Skin::of(simd, frame, &hits, &surfaces, &materials, &Sight::sharp(direction));
+    let through = transparency.scale(skin.transmission) * skin.color;
+    let blended = materials.lanes(simd, |material| material.blended);
+    let past = V3::all(S::f32s::splat(simd, 1.0) - skin.coverage);
+    V3::select(crossed, V3::select(blended, past, through), one)
 }

@@ -55,8 +55,8 @@ fn leavings(geometry: &Geometry, primitive: usize, origin: DVec3, direction: DVe
             let fields = geometry.planes[block].get(place);
             i32::from(vector(&fields, 0).dot(origin) < f64::from(fields[3]))
         }
-        PrimitiveKind::Triangle => {
-            let fields = geometry.triangles[block].get(place);
+        PrimitiveKind::Triangle | PrimitiveKind::Cutout => {
+            let fields = geometry.triangles_of(slot.kind)[block].get(place);
             let [a, b, c] = [0, 3, 6].map(|at| vector(&fields, at));
             let normal = (b - a).cross(c - a) * f64::from(fields[9]);
             let weights = [

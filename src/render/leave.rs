@@ -44,7 +44,7 @@ pub fn start<S: Simd>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
+    use crate::geometry::primitive::{Cone, Cutout, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
     use crate::geometry::{
         ClosestHit, Geometry, NO_PRIMITIVE, Packet, Part, PrimitiveId, PrimitiveKind, Search, Shape, Stack,
     };
@@ -76,7 +76,7 @@ mod tests {
             PrimitiveKind::Sphere => Shape::Sphere { center, radius: size },
             PrimitiveKind::Plane => Shape::Plane { point: center, normal: a },
             PrimitiveKind::Disk => Shape::Disk { center, normal: a, radius: size },
-            PrimitiveKind::Triangle => {
+            PrimitiveKind::Triangle | PrimitiveKind::Cutout => {
                 Shape::Triangle { vertices: [center - a * size, center + a * size, center + b * size] }
             }
             PrimitiveKind::Cone => {
@@ -131,7 +131,7 @@ mod tests {
                 // Smaller things are lost in the rounding of their own coordinates.
                 let size = random.magnitude(-6.0, 6.0).max(center.length() * 1e-3);
                 let shape = shape(kind, &mut random, center, size);
-                let part = Part { shape, id: PrimitiveId { object: 0, primitive: 0 }, attributes: None };
+                let part = Part::new(shape, PrimitiveId { object: 0, primitive: 0 });
                 let geometry = Geometry::build(vec![part]);
                 let origin = center + random.direction() * size * random.magnitude(0.0, 2.0);
                 let target = center + random.direction() * size * random.within(0.0, 1.0) as f32;

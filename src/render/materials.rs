@@ -1,16 +1,13 @@
 //! From hits to lanes: what the surfaces of a packet are made of.
 
 use super::frame::Frame;
-use super::gather::{Hits, Surfaces};
+use super::gather::Hits;
 use super::queue::MOST_LANES;
 use super::tables::{FlatMaterial, Row};
 use crate::geometry::PrimitiveIndex;
 use crate::math::V3;
-use crate::scene::object::Mapping;
-use crate::scene::texture::Coordinates;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use glam::Vec2;
 
 /// Lane mask of native width.
 type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
@@ -31,24 +28,6 @@ pub(super) trait Materials<S: Simd> {
     fn triple(&self, simd: S, first: Row) -> V3<S::f32s> {
         let row = first as usize;
         V3::new(self.row(simd, row), self.row(simd, row + 1), self.row(simd, row + 2))
-    }
-
-    /// Replaces the colours and emissions of textured lanes by what their textures hold.
-    #[inline(always)]
-    fn look_up(
-        &self,
-        simd: S,
-        frame: &Frame<'_>,
-        hits: &Hits<'_>,
-        surfaces: &Surfaces<S>,
-        color: &mut V3<S::f32s>,
-        emission: &mut V3<S::f32s>,
-    ) {
-        let textured = self.lanes(simd, FlatMaterial::is_textured).to_bitmask() & hits.active;
-        simd.vectorize(
-            #[inline(always)]
-            || look_up(simd, frame, hits, surfaces, textured, color, emission),
-        );
     }
 }
 
@@ -148,91 +127,4 @@ impl<S: Simd> Materials<S> for MixedMaterials<'_, S> {
         }
         value
     }
-}
-
-/// [`Materials::look_up`] for the lanes in the bit set `textured`, object by object.
-#[inline(always)]
-fn look_up<S: Simd>(
-    simd: S,
-    frame: &Frame<'_>,
-    hits: &Hits<'_>,
-    surfaces: &Surfaces<S>,
-    textured: u64,
-    color: &mut V3<S::f32s>,
-    emission: &mut V3<S::f32s>,
-) {
-    let ids = &frame.scene.geometry.ids;
-    let id = ids[hits.primitives[hits.first()] as usize];
-    if hits.common.is_some() {
-        let sides = Mask::<S>::splat(simd, id.primitive == 0);
-        let found = look_up_object(simd, frame, hits, surfaces, id.object, sides, textured, [*color, *emission]);
-        [*color, *emission] = found;
-        return;
-    }
-    let (mut objects, mut parts) = ([id.object; MOST_LANES], [id.primitive; MOST_LANES]);
-    for lane in hits.lanes() {
-        let id = ids[hits.primitives[lane] as usize];
-        (objects[lane], parts[lane]) = (id.object, id.primitive);
-    }
-    let lanes = S::u32s::from_slice(simd, &objects[..S::f32s::LEN]);
-    let sides = S::u32s::from_slice(simd, &parts[..S::f32s::LEN]).simd_eq(0);
-    let mut left = textured;
-    while left != 0 {
-        let number = objects[left.trailing_zeros() as usize % MOST_LANES];
-        let same = lanes.simd_eq(number);
-        let members = same.to_bitmask() & left;
-        left &= !members;
-        let [found, given_off] =
-            look_up_object(simd, frame, hits, surfaces, number, sides, members, [*color, *emission]);
-        *color = V3::select(same, found, *color);
-        *emission = V3::select(same, given_off, *emission);
-    }
-}
-
-/// Colour and emission as the textures of object `number` have them, otherwise as they were. `sides` are the lanes that
-/// hit its first primitive; only the lanes in the bit set `members` matter.
-#[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "what is known of one object's lanes")]
-fn look_up_object<S: Simd>(
-    simd: S,
-    frame: &Frame<'_>,
-    hits: &Hits<'_>,
-    surfaces: &Surfaces<S>,
-    number: u32,
-    sides: Mask<S>,
-    members: u64,
-    mut found: [V3<S::f32s>; 2],
-) -> [V3<S::f32s>; 2] {
-    let object = &frame.scene.objects[number as usize];
-    let own = if object.mapping == Mapping::Vertex {
-        vertex_coordinates(simd, frame, hits, surfaces)
-    } else {
-        [S::f32s::splat(simd, 0.0); 2]
-    };
-    let point = &surfaces.point;
-    let coordinates = object.texture_coordinates(simd, point.position, point.normal, sides, own);
-    let material = &frame.tables.materials[object.material as usize];
-    let coordinates = Coordinates::<S> { uv: coordinates, spread2: None };
-    for (texture, into) in [material.color_texture, material.emission_texture].into_iter().zip(&mut found) {
-        if let Some(texture) = texture {
-            *into = *into * frame.scene.textures[texture as usize].sample(simd, &coordinates, members).color;
-        }
-    }
-    found
-}
-
-/// Texture coordinates that the corners of triangles carry, interpolated; 0 where they carry none.
-#[inline(always)]
-fn vertex_coordinates<S: Simd>(simd: S, frame: &Frame<'_>, hits: &Hits<'_>, surfaces: &Surfaces<S>) -> [S::f32s; 2] {
-    let corners = hits.gather::<S, 6>(
-        simd,
-        #[inline(always)]
-        |primitive| {
-            let coordinates = frame.tables.attributes(&frame.scene.geometry, primitive).and_then(|a| a.uvs);
-            let [a, b, c] = coordinates.unwrap_or([Vec2::ZERO; 3]);
-            [a.x, a.y, b.x, b.y, c.x, c.y]
-        },
-    );
-    let [u, v, w] = surfaces.weights;
-    [corners[0] * u + corners[2] * v + corners[4] * w, corners[1] * u + corners[3] * v + corners[5] * w]
 }

@@ -2,7 +2,7 @@
 
 use super::tables::{FlatMaterial, Tables};
 use crate::geometry::PrimitiveKind;
-use crate::scene::Scene;
+use crate::scene::{Scene, Texture};
 use crate::settings::{Fill, Settings, SphereCache, Visibility};
 use glam::Vec3;
 
@@ -35,6 +35,18 @@ pub struct Plan {
     pub textures: bool,
     /// Interpolate normals or texture coordinates of triangles.
     pub vertex_attributes: bool,
+    /// Keep track of how texture coordinates grow along surfaces, and of how wide rays are.
+    pub gradients: bool,
+    /// Some surface has relief.
+    pub relief: bool,
+    /// Some triangles carry tangents.
+    pub tangents: bool,
+    /// Some triangles carry colours.
+    pub vertex_colors: bool,
+    /// What lies straight behind some surfaces shines through.
+    pub blending: bool,
+    /// Some surface shows its colour whatever the light.
+    pub unlit: bool,
     /// Some surface has a Blinn-Phong highlight.
     pub highlights: bool,
     /// Some surface gives off light.
@@ -67,6 +79,7 @@ impl Plan {
         // Whatever found the hits: shaded in the tile's order, they and what follows from them lie close together. Corners
         // of cells that are shaded level by level do not, and gain nothing.
         let secondary_beams = beams || settings.visibility == Visibility::Subsample && settings.fill == Fill::Hit;
+        let relief = tables.materials.iter().any(|m| m.relieved);
         // A light at the eye casts no shadow that the eye sees itself, but mirrors and glass show them.
         let shadows = settings.shadows && (!scene.headlight || reflections || refractions);
         Self {
@@ -82,7 +95,13 @@ impl Plan {
             media: !tables.transparent_bodies.is_empty(),
             absorption: tables.transparent_bodies.iter().any(|&object| absorbs(object)),
             textures: tables.materials.iter().any(FlatMaterial::is_textured),
-            vertex_attributes: !scene.geometry.attributes.is_empty(),
+            vertex_attributes: !scene.geometry.attributes.is_empty() || !scene.geometry.extras.is_empty(),
+            gradients: relief || scene.textures.iter().any(Texture::is_filtered),
+            relief,
+            tangents: relief && tables.tangents,
+            vertex_colors: tables.vertex_colors,
+            blending: tables.materials.iter().any(|m| m.blended),
+            unlit: tables.materials.iter().any(|m| m.unlit),
             highlights: tables.materials.iter().any(|m| m.shiny),
             emission: tables.materials.iter().any(|m| m.emissive),
             metallic_roughness: tables.materials.iter().any(|m| m.metallic_roughness),

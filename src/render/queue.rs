@@ -128,7 +128,21 @@ pub struct RayQueue {
     pub t: Vec<f32>,
     /// The primitive hit, or [`NO_PRIMITIVE`].
     pub primitive: Vec<u32>,
+    /// How long the way from the eye to its start is; of rays from the eye the column holds nothing.
+    way: Vec<f32>,
     len: usize,
+}
+
+/// What rays that follow from others belong to, a lane each.
+pub struct Lineage<S: Simd> {
+    /// Which sample of the tile.
+    pub sample: S::u32s,
+    /// The bodies they start in.
+    pub media: S::u32s,
+    /// The flat primitive that mirrored them, or [`NO_PRIMITIVE`].
+    pub source: S::u32s,
+    /// How long the way from the eye to their start is.
+    pub way: S::f32s,
 }
 
 impl RayQueue {
@@ -157,6 +171,15 @@ impl RayQueue {
         if self.unweighted { V3::splat(simd, Vec3::ONE) } else { self.weight.load(simd, at) }
     }
 
+    /// How long the ways from the eye to the starts of the packet at `at` are.
+    #[inline(always)]
+    pub fn ways<S: Simd>(&self, simd: S, at: usize) -> S::f32s {
+        match self.eye {
+            Some(_) => S::f32s::splat(simd, 0.0),
+            None => S::f32s::from_slice(simd, &self.way[at..at + S::f32s::LEN]),
+        }
+    }
+
     /// The columns of the weights, all of them filled.
     pub fn weights_mut(&mut self) -> &mut Columns {
         if self.unweighted {
@@ -178,6 +201,7 @@ impl RayQueue {
             self.media.resize(room, 0);
             self.source.resize(room, NO_PRIMITIVE);
             self.t.resize(room, 0.0);
+            self.way.resize(room, 0.0);
             self.primitive.resize(room, NO_PRIMITIVE);
         }
     }
@@ -190,15 +214,16 @@ impl RayQueue {
         origin: V3<S::f32s>,
         direction: V3<S::f32s>,
         weight: V3<S::f32s>,
-        [sample, media, source]: [S::u32s; 3],
+        lineage: &Lineage<S>,
     ) {
         let at = self.len;
         self.origin.put::<S>(at, mask, origin);
         self.direction.put::<S>(at, mask, direction);
         self.weight.put::<S>(at, mask, weight);
-        put_numbers::<S>(&mut self.sample, at, mask, sample);
-        put_numbers::<S>(&mut self.media, at, mask, media);
-        put_numbers::<S>(&mut self.source, at, mask, source);
+        put_numbers::<S>(&mut self.sample, at, mask, lineage.sample);
+        put_numbers::<S>(&mut self.media, at, mask, lineage.media);
+        put_numbers::<S>(&mut self.source, at, mask, lineage.source);
+        put::<S>(&mut self.way, at, mask, lineage.way);
         self.len += count::<S>(mask);
     }
 

@@ -5,7 +5,8 @@ use super::gather::{Hits, bits};
 use super::leave;
 use super::materials::Materials;
 use super::media::{Media, MediaList, OUTSIDE};
-use super::queue::{MOST_LANES, RayQueue};
+use super::queue::{Lineage, MOST_LANES, RayQueue};
+use super::skin::Skin;
 use super::stats::RayCounts;
 use super::tables::Row;
 use crate::geometry::NO_PRIMITIVE;
@@ -17,7 +18,7 @@ use fearless_simd::prelude::*;
 type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
 
 /// A packet of rays at the surfaces that they hit.
-pub(super) struct Incident<S: Simd> {
+pub(super) struct Incident<'a, S: Simd> {
     /// The lanes whose surfaces mirror or refract.
     pub spawning: Mask<S>,
     pub direction: V3<S::f32s>,
@@ -30,13 +31,23 @@ pub(super) struct Incident<S: Simd> {
     pub normal: V3<S::f32s>,
     /// The ray came from inside of the object.
     pub from_behind: Mask<S>,
-    /// Surface colour.
-    pub color: V3<S::f32s>,
+    /// What the surface is like.
+    pub skin: &'a Skin<S>,
     pub weight: V3<S::f32s>,
     pub sample: S::u32s,
     pub media: S::u32s,
     /// The primitive, where it is flat; else [`NO_PRIMITIVE`].
     pub flat: S::u32s,
+    /// How long the way from the eye is.
+    pub way: S::f32s,
+}
+
+impl<S: Simd> Incident<'_, S> {
+    /// What rays that follow belong to.
+    #[inline(always)]
+    fn lineage(&self, media: S::u32s, source: S::u32s) -> Lineage<S> {
+        Lineage { sample: self.sample, media, source, way: self.way }
+    }
 }
 
 /// What share of the light is mirrored and refracted, and where to.
@@ -65,7 +76,7 @@ pub(super) fn follow<S: Simd>(
     frame: &Frame<'_>,
     hits: &Hits<'_>,
     materials: &impl Materials<S>,
-    incident: &Incident<S>,
+    incident: &Incident<'_, S>,
     media: &mut Media,
     [mirrored, refracted]: [&mut RayQueue; 2],
     counts: &mut RayCounts,
@@ -74,7 +85,7 @@ pub(super) fn follow<S: Simd>(
     let cosine = (-incident.direction.dot(incident.normal)).max(0.0);
     let transparent = Transparent::new(simd, frame, hits, materials, incident.spawning.to_bitmask());
     let mut split = Split::<S> {
-        reflected: mirror_share(simd, frame, materials, incident.color, cosine),
+        reflected: mirror_share(simd, frame, materials, incident.skin, cosine),
         refracted: V3::zero(simd),
         inward: incident.direction,
     };
@@ -86,6 +97,17 @@ pub(super) fn follow<S: Simd>(
         split.refracted = V3::select(lanes, through.refracted, split.refracted);
         split.inward = through.inward;
     }
+    let mut tint = incident.skin.color;
+    if frame.plan.blending && materials.any(|material| material.blended) {
+        // Straight on, as if nothing were there, for what the surface does not cover.
+        let coverage = incident.skin.coverage;
+        let one = S::f32s::splat(simd, 1.0);
+        let blended = materials.lanes(simd, |material| material.blended);
+        split.reflected = V3::select(blended, split.reflected.scale(coverage), split.reflected);
+        split.refracted = V3::select(blended, V3::all(one - coverage), split.refracted);
+        split.inward = V3::select(blended, incident.direction, split.inward);
+        tint = V3::select(blended, V3::all(one), tint);
+    }
 
     if frame.plan.reflections {
         let weight = incident.weight * split.reflected;
@@ -93,12 +115,12 @@ pub(super) fn follow<S: Simd>(
         if heavy.any_true() {
             let direction = hold_unit::<S>(incident.direction + incident.normal.scale(cosine * 2.0));
             let start = leave::start::<S>(incident.position, incident.facing, incident.margin, direction);
-            mirrored.push_lanes::<S>(heavy, start, direction, weight, [incident.sample, incident.media, incident.flat]);
+            mirrored.push_lanes::<S>(heavy, start, direction, weight, &incident.lineage(incident.media, incident.flat));
             counts.reflection += u64::from(heavy.to_bitmask().count_ones());
         }
     }
     if frame.plan.refractions && transparent.lanes != 0 {
-        let weight = incident.weight * (split.refracted * incident.color);
+        let weight = incident.weight * (split.refracted * tint);
         let heavy = incident.spawning & heavy(simd, weight, frame.settings.min_weight);
         if heavy.any_true() {
             let crossing = heavy.to_bitmask() & transparent.bodies;
@@ -109,7 +131,7 @@ pub(super) fn follow<S: Simd>(
             };
             let start = leave::start::<S>(incident.position, -incident.facing, incident.margin, split.inward);
             let nothing = S::u32s::splat(simd, NO_PRIMITIVE);
-            refracted.push_lanes::<S>(heavy, start, split.inward, weight, [incident.sample, inside, nothing]);
+            refracted.push_lanes::<S>(heavy, start, split.inward, weight, &incident.lineage(inside, nothing));
             counts.refraction += u64::from(heavy.to_bitmask().count_ones());
         }
     }
@@ -160,7 +182,7 @@ fn heavy<S: Simd>(simd: S, weight: V3<S::f32s>, min_weight: f32) -> Mask<S> {
 fn outside_index<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
-    incident: &Incident<S>,
+    incident: &Incident<'_, S>,
     transparent: &Transparent,
     media: &Media,
 ) -> S::f32s {
@@ -187,7 +209,7 @@ fn outside_index<S: Simd>(
 fn refract<S: Simd>(
     simd: S,
     materials: &impl Materials<S>,
-    incident: &Incident<S>,
+    incident: &Incident<'_, S>,
     cosine: S::f32s,
     outside: S::f32s,
     bodies: u64,
@@ -207,7 +229,7 @@ fn refract<S: Simd>(
     let mirrored = total.select(one, mirrored);
 
     let bent = incident.direction.scale(eta) + incident.normal.scale(eta * cosine - cosine_inward);
-    let transparency = materials.triple(simd, Row::Transparency);
+    let transparency = materials.triple(simd, Row::Transparency).scale(incident.skin.transmission);
     Split {
         reflected: materials.triple(simd, Row::Reflectivity) + transparency.scale(mirrored),
         refracted: transparency.scale(one - mirrored),
@@ -232,7 +254,7 @@ fn mirror_share<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     materials: &impl Materials<S>,
-    color: V3<S::f32s>,
+    skin: &Skin<S>,
     cosine: S::f32s,
 ) -> V3<S::f32s> {
     let reflectivity = materials.triple(simd, Row::Reflectivity);
@@ -240,8 +262,7 @@ fn mirror_share<S: Simd>(
         return reflectivity;
     }
     let one = S::f32s::splat(simd, 1.0);
-    let metallic = materials.row(simd, Row::Metallic as usize);
-    let f0 = V3::all((one - metallic) * 0.04) + color.scale(metallic);
+    let f0 = V3::all((one - skin.metallic) * 0.04) + skin.color.scale(skin.metallic);
     let x = one - cosine;
     let x2 = x * x;
     let schlick = f0 + (V3::all(one) - f0).scale(x2 * x2 * x);
@@ -252,7 +273,7 @@ fn mirror_share<S: Simd>(
 #[inline(always)]
 fn cross<S: Simd>(
     simd: S,
-    incident: &Incident<S>,
+    incident: &Incident<'_, S>,
     objects: &[u32; MOST_LANES],
     crossing: u64,
     media: &mut Media,
@@ -280,7 +301,7 @@ fn cross<S: Simd>(
 #[inline(always)]
 fn for_each_list<S: Simd>(
     simd: S,
-    incident: &Incident<S>,
+    incident: &Incident<'_, S>,
     objects: &[u32; MOST_LANES],
     lanes: u64,
     mut visit: impl FnMut(MediaList, u32, Mask<S>),

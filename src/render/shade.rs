@@ -10,7 +10,9 @@ use super::materials::{Materials, MixedMaterials, OneMaterial};
 use super::queue::{RayQueue, ShadowPacket};
 use super::samples::CELL;
 use super::secondary::{self, Incident};
-use super::tables::{FlatMaterial, Row};
+use super::skin::Skin;
+use super::tables::{MIRROR_ROUGHNESS, Row};
+use super::texture_place::Sight;
 use super::tile::{Seen, Worker};
 use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex};
 use crate::math::V3;
@@ -142,12 +144,9 @@ fn follow_one<S: Simd>(simd: S, frame: &Frame<'_>, at: usize, primitive: Primiti
     let hits = Hits::new(simd, primitives.as_slice());
     let rays = Incoming::load(simd, &worker.rays, at);
     let surfaces = surfaces_of_one(simd, frame, &hits, primitive, rays.origin, rays.direction, rays.t);
-    let mut color = materials.triple(simd, Row::Color);
-    if frame.plan.textures && Materials::<S>::any(&materials, FlatMaterial::is_textured) {
-        materials.look_up(simd, frame, &hits, &surfaces, &mut color, &mut V3::zero(simd));
-    }
-    let view = View::new(simd, &surfaces, rays.direction);
-    follow(simd, frame, 1, at, &hits, &rays, &surfaces, &view, &materials, color, worker);
+    let skin = Skin::of(simd, frame, &hits, &surfaces, &materials, &rays.sight(frame, &surfaces));
+    let view = View::new(simd, &surfaces, skin.normal, rays.direction);
+    follow(simd, frame, 1, at, &hits, &rays, &surfaces, &view, &materials, &skin, worker);
 }
 
 /// Shades the packet at `at`, whose hits are of several primitives.
@@ -167,17 +166,27 @@ struct Incoming<S: Simd> {
     direction: V3<S::f32s>,
     t: S::f32s,
     weight: V3<S::f32s>,
+    /// How long the way from the eye to the hit is.
+    way: S::f32s,
 }
 
 impl<S: Simd> Incoming<S> {
     #[inline(always)]
     fn load(simd: S, rays: &RayQueue, at: usize) -> Self {
+        let t = S::f32s::from_slice(simd, &rays.t[at..at + S::f32s::LEN]);
         Self {
             origin: rays.origins(simd, at),
             direction: rays.direction.load(simd, at),
-            t: S::f32s::from_slice(simd, &rays.t[at..at + S::f32s::LEN]),
+            t,
             weight: rays.weights(simd, at),
+            way: rays.ways(simd, at) + t,
         }
+    }
+
+    /// How they see what they hit.
+    #[inline(always)]
+    fn sight(&self, frame: &Frame<'_>, surfaces: &Surfaces<S>) -> Sight<S> {
+        Sight::new(frame, surfaces, self.direction, self.way)
     }
 }
 
@@ -199,26 +208,31 @@ fn shade_surfaces<S: Simd>(
     let paint = *paint;
     let samples = &rays.sample[lanes.clone()];
     let &Incoming { direction, weight, .. } = incoming;
-    let view = View::new(simd, surfaces, direction);
+    let skin = match paint.unwrap_or_default() {
+        Paint::Own => Skin::of(simd, frame, hits, surfaces, materials, &incoming.sight(frame, surfaces)),
+        Paint::White => Skin::plain(simd, frame, surfaces, materials).painted(V3::splat(simd, Vec3::ONE)),
+        Paint::Black => Skin::plain(simd, frame, surfaces, materials).painted(V3::zero(simd)),
+    };
+    let view = View::new(simd, surfaces, skin.normal, direction);
     if level == 1 && frame.keeps_normals && paint.is_none() {
         for lane in hits.lanes() {
             seen[samples[lane] as usize].normal = view.normal.lane(lane).into();
         }
     }
 
-    let mut color = match paint.unwrap_or_default() {
-        Paint::Own => materials.triple(simd, Row::Color),
-        Paint::White => V3::splat(simd, Vec3::ONE),
-        Paint::Black => V3::zero(simd),
-    };
-    let mut emission = if frame.plan.emission { materials.triple(simd, Row::Emission) } else { V3::zero(simd) };
-    if frame.plan.textures && paint.unwrap_or_default() == Paint::Own && materials.any(FlatMaterial::is_textured) {
-        materials.look_up(simd, frame, hits, surfaces, &mut color, &mut emission);
+    let mut opacity = materials.triple(simd, Row::Opacity);
+    if frame.plan.textures && materials.any(|material| material.maps.transmission.is_some()) {
+        let one = V3::splat(simd, Vec3::ONE);
+        opacity = one - materials.triple(simd, Row::Transparency).scale(skin.transmission);
     }
-    let opacity = materials.triple(simd, Row::Opacity);
     let active = Mask::<S>::from_bitmask(simd, hits.active);
-    let ambient = V3::splat(simd, frame.ambient) * materials.triple(simd, Row::Ambient);
-    let own = weight * (opacity * ambient * color + emission);
+    let mut ambient = V3::splat(simd, frame.ambient) * materials.triple(simd, Row::Ambient).scale(skin.openness);
+    if frame.plan.unlit {
+        let unlit = materials.lanes(simd, |material| material.unlit);
+        ambient = V3::select(unlit, V3::splat(simd, Vec3::ONE), ambient);
+    }
+    let covered = weight.scale(skin.coverage);
+    let own = covered * (opacity * ambient * skin.color + skin.emission);
     let background = weight * V3::splat(simd, frame.scene.render.background);
     let own = V3::select(active, own, background);
     colors.deposit(simd, level == 1, samples, present::<S>(rays, at), own);
@@ -230,9 +244,9 @@ fn shade_surfaces<S: Simd>(
         margin: leave::margin::<S>(surfaces.point.scale),
         normal: view.normal,
         to_viewer: -direction,
-        weight,
+        weight: covered,
     };
-    let reflectance = Reflectance::gather(simd, frame, materials, color, opacity);
+    let reflectance = Reflectance::gather(simd, frame, materials, &skin, opacity);
     let sample = S::u32s::from_slice(simd, samples);
     let primitives = S::u32s::from_slice(simd, hits.primitives);
     // All shapes are flat or, from outside, convex: a ray that leaves their outside does not come back.
@@ -250,7 +264,7 @@ fn shade_surfaces<S: Simd>(
     }
 
     if paint.is_none() {
-        follow(simd, frame, level, at, hits, incoming, surfaces, &view, materials, color, worker);
+        follow(simd, frame, level, at, hits, incoming, surfaces, &view, materials, &skin, worker);
     }
 }
 
@@ -267,7 +281,7 @@ fn follow<S: Simd>(
     surfaces: &Surfaces<S>,
     view: &View<S>,
     materials: &impl Materials<S>,
-    color: V3<S::f32s>,
+    skin: &Skin<S>,
     worker: &mut Worker,
 ) {
     if level < frame.plan.depth
@@ -279,19 +293,26 @@ fn follow<S: Simd>(
         let primitives = S::u32s::from_slice(simd, hits.primitives);
         let flat = Mask::<S>::from_bitmask(simd, surfaces.flat);
         let active = Mask::<S>::from_bitmask(simd, hits.active);
+        let mut spawning = active & materials.lanes(simd, |material| material.secondary);
+        if frame.plan.metallic_roughness {
+            // Where it is too rough for that, it neither mirrors nor refracts; what it does not cover is seen all the same.
+            let smooth = skin.roughness.simd_lt(S::f32s::splat(simd, MIRROR_ROUGHNESS));
+            spawning &= smooth | materials.lanes(simd, |material| material.blended);
+        }
         let incident = Incident {
-            spawning: active & materials.lanes(simd, |material| material.secondary),
+            spawning,
             direction: incoming.direction,
             position: surfaces.point.position,
             facing: view.facing,
             margin: leave::margin::<S>(surfaces.point.scale),
             normal: view.normal,
             from_behind: view.from_behind,
-            color,
+            skin,
             weight: incoming.weight,
             sample: S::u32s::from_slice(simd, &rays.sample[lanes.clone()]),
             media: S::u32s::from_slice(simd, &rays.media[lanes]),
             flat: flat.select(primitives, S::u32s::splat(simd, NO_PRIMITIVE)),
+            way: incoming.way,
         };
         simd.vectorize(
             #[inline(always)]
@@ -323,12 +344,12 @@ struct View<S: Simd> {
 
 impl<S: Simd> View<S> {
     #[inline(always)]
-    fn new(simd: S, surfaces: &Surfaces<S>, direction: V3<S::f32s>) -> Self {
+    fn new(simd: S, surfaces: &Surfaces<S>, normal: V3<S::f32s>, direction: V3<S::f32s>) -> Self {
         let geometric = surfaces.point.normal;
         let from_behind = direction.dot(geometric).simd_gt(S::f32s::splat(simd, 0.0));
         Self {
             from_behind,
-            normal: V3::select(from_behind, -surfaces.shading_normal, surfaces.shading_normal),
+            normal: V3::select(from_behind, -normal, normal),
             facing: V3::select(from_behind, -geometric, geometric),
         }
     }
@@ -360,10 +381,28 @@ fn store_seen_packet<S: Simd>(simd: S, frame: &Frame<'_>, at: usize, rays: &RayQ
     let direction = rays.direction.load::<S>(simd, at);
     let t = S::f32s::from_slice(simd, &rays.t[lanes]);
     let surfaces = surfaces(simd, frame, &hits, rays.origins(simd, at), direction, t);
-    let normal = View::new(simd, &surfaces, direction).normal;
+    let normal = seen_normal(simd, frame, &hits, &surfaces, direction, t);
     for lane in hits.lanes() {
         let normal = normal.lane(lane).into();
         seen[rays.sample[at + lane] as usize] =
             Seen { primitive: rays.primitive[at + lane], t: rays.t[at + lane], normal };
     }
+}
+
+/// Shading normals on the viewer's side, of rays from the eye.
+#[inline(always)]
+fn seen_normal<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    hits: &Hits<'_>,
+    surfaces: &Surfaces<S>,
+    direction: V3<S::f32s>,
+    t: S::f32s,
+) -> V3<S::f32s> {
+    let mut normal = surfaces.shading_normal;
+    if frame.plan.relief {
+        let materials = MixedMaterials::new(simd, frame, hits);
+        normal = Skin::of(simd, frame, hits, surfaces, &materials, &Sight::new(frame, surfaces, direction, t)).normal;
+    }
+    View::new(simd, surfaces, normal, direction).normal
 }

@@ -1,9 +1,9 @@
 //! What shading reads of a scene, flattened for gathering into lanes. Made once a scene.
 
-use crate::geometry::{Geometry, Opaque, PrimitiveIndex, VertexAttributes};
-use crate::scene::material::{ColorSource, Model};
+use crate::geometry::{Geometry, Opaque, PrimitiveIndex, VertexAttributes, VertexExtras};
+use crate::scene::material::{Lookup, Model, Relief, Scaled};
 use crate::scene::{Material, Scene};
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// Numbers of a material, in the order in which shading reads them.
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,20 +36,20 @@ pub enum Row {
     Ior = 27,
     /// Square of the n·h up to which nothing is seen of a Blinn-Phong highlight.
     HighlightEdge2 = 28,
+    /// How much of what is seen is the surface's own, before textures.
+    Coverage = 29,
 }
 
 /// Numbers a material has.
-pub const ROWS: usize = 29;
+pub const ROWS: usize = 30;
 
 /// One material, flattened.
 #[derive(Clone, Debug)]
 pub struct FlatMaterial {
     /// The numbers that [`Row`] names.
     pub rows: [f32; ROWS],
-    /// Texture of the colour.
-    pub color_texture: Option<u32>,
-    /// Texture of the emission.
-    pub emission_texture: Option<u32>,
+    /// What is looked up.
+    pub maps: Maps,
     /// Whether it has a highlight.
     pub shiny: bool,
     /// Whether it gives off light.
@@ -60,18 +60,66 @@ pub struct FlatMaterial {
     pub transparent: bool,
     /// Whether Fresnel's equations share out what passes.
     pub fresnel: bool,
-    /// Whether it reflects or refracts rays.
+    /// Whether it reflects or refracts rays; metallic-roughness may do so only where it is smooth.
     pub secondary: bool,
+    /// Whether what lies straight behind shines through.
+    pub blended: bool,
+    /// Whether it shows its colour whatever the light.
+    pub unlit: bool,
+    /// Whether it has relief.
+    pub relieved: bool,
+}
+
+/// Where the numbers of a material vary over its surface.
+#[derive(Clone, Debug)]
+pub struct Maps {
+    /// Surface colour, and opacity.
+    pub color: Option<Lookup>,
+    /// Light given off.
+    pub emission: Option<Lookup>,
+    /// Roughness (green) and metallic (blue).
+    pub metallic_roughness: Option<Lookup>,
+    /// Share of the ambient light that arrives (red).
+    pub occlusion: Option<Scaled>,
+    /// Share of the transparency (red).
+    pub transmission: Option<Lookup>,
+    /// Relief.
+    pub relief: Relief,
+    /// Whether any of them asks for the second texture coordinates.
+    pub uses_second_set: bool,
+}
+
+impl Maps {
+    fn new(material: &Material) -> Self {
+        let mut maps = Self {
+            color: material.color.texture,
+            emission: material.emission.texture,
+            metallic_roughness: material.metallic_roughness,
+            occlusion: material.occlusion,
+            transmission: material.transmission,
+            relief: material.relief,
+            uses_second_set: false,
+        };
+        let uses_second_set = maps.lookups().any(|lookup| lookup.set != 0);
+        maps.uses_second_set = uses_second_set;
+        maps
+    }
+
+    /// All of them.
+    pub fn lookups(&self) -> impl Iterator<Item = Lookup> {
+        let Relief { normal, bump, parallax } = self.relief;
+        let scaled = [self.occlusion, normal, bump, parallax].map(|scaled| scaled.map(|scaled| scaled.lookup));
+        let plain = [self.color, self.emission, self.metallic_roughness, self.transmission];
+        plain.into_iter().chain(scaled).flatten()
+    }
 }
 
 /// Metallic-roughness surfaces smoother than this mirror and refract rays.
-const MIRROR_ROUGHNESS: f32 = 0.1;
+pub(super) const MIRROR_ROUGHNESS: f32 = 0.1;
 
 impl FlatMaterial {
     fn new(material: &Material) -> Self {
-        let parts = |source: ColorSource| (source.factor, source.texture.map(|lookup| lookup.texture));
-        let (color, color_texture) = parts(material.color);
-        let (emission, emission_texture) = parts(material.emission);
+        let (color, emission) = (material.color.factor, material.emission.factor);
         let mut rows = [0.0; ROWS];
         let mut put = |row: Row, values: &[f32]| {
             rows[row as usize..row as usize + values.len()].copy_from_slice(values);
@@ -82,8 +130,11 @@ impl FlatMaterial {
         put(Row::Reflectivity, &material.reflectivity.to_array());
         put(Row::Transparency, &material.transparency.to_array());
         put(Row::Ior, &[material.ior]);
+        put(Row::Coverage, &[if material.is_blended() { material.opacity } else { 1.0 }]);
         let mut smooth = true;
         match material.model {
+            // Its own colour stands for the light: nothing arrives, nothing is mirrored.
+            _ if material.unlit => put(Row::Roughness, &[-1.0]),
             Model::Phong { ambient, diffuse, specular, shininess } => {
                 put(Row::Ambient, &ambient.to_array());
                 put(Row::Diffuse, &diffuse.to_array());
@@ -96,10 +147,10 @@ impl FlatMaterial {
                 put(Row::Ambient, &ambient.to_array());
                 put(Row::Metallic, &[metallic]);
                 put(Row::Roughness, &[roughness]);
-                smooth = roughness < MIRROR_ROUGHNESS;
+                smooth = roughness < MIRROR_ROUGHNESS || material.metallic_roughness.is_some();
             }
         }
-        let metallic_roughness = matches!(material.model, Model::MetallicRoughness { .. });
+        let metallic_roughness = matches!(material.model, Model::MetallicRoughness { .. }) && !material.unlit;
         let mirrors = metallic_roughness || material.reflectivity != Vec3::ZERO;
         Self {
             shiny: rows[Row::Specular as usize..][..3] != [0.0; 3],
@@ -107,10 +158,13 @@ impl FlatMaterial {
             transparent: material.is_transparent(),
             fresnel: material.fresnel,
             rows,
-            color_texture,
-            emission_texture,
+            maps: Maps::new(material),
             metallic_roughness,
-            secondary: smooth && (mirrors || material.is_transparent()),
+            // What is seen straight through is so however rough the surface.
+            secondary: material.is_blended() || !material.unlit && smooth && (mirrors || material.is_transparent()),
+            blended: material.is_blended(),
+            unlit: material.unlit,
+            relieved: material.relief != Relief::NONE,
         }
     }
 }
@@ -121,9 +175,15 @@ fn highlight_edge2(shininess: f32) -> f32 {
 }
 
 impl FlatMaterial {
-    /// Whether any of its colours is looked up.
+    /// Whether anything of it is looked up.
     pub fn is_textured(&self) -> bool {
-        self.color_texture.is_some() || self.emission_texture.is_some()
+        self.maps.lookups().next().is_some()
+    }
+
+    /// Whether its light varies by more than its colour: what is interpolated would be missing something.
+    pub fn is_uneven(&self) -> bool {
+        let Maps { metallic_roughness, occlusion, .. } = &self.maps;
+        self.relieved || self.blended || self.unlit || metallic_roughness.is_some() || occlusion.is_some()
     }
 }
 
@@ -141,6 +201,12 @@ pub struct Tables {
     pub material_of: Vec<u32>,
     /// Where the attributes of each primitive lie, or [`NOTHING`]; empty where none carries any.
     attributes_of: Vec<u32>,
+    /// Where the extras of each primitive lie, in the same way.
+    extras_of: Vec<u32>,
+    /// Whether any triangle carries tangents.
+    pub tangents: bool,
+    /// Whether any triangle carries colours.
+    pub vertex_colors: bool,
     /// For each primitive whether it blocks all light; empty where every one does.
     pub opaque: Vec<bool>,
     /// Objects that bound a transparent body.
@@ -167,17 +233,13 @@ impl Tables {
         let primitives = scene.geometry.slots.iter().zip(&scene.geometry.ids);
         let flat_mirrors = materials.iter().any(|material| material.secondary)
             && primitives.into_iter().any(|(slot, id)| slot.kind.is_flat() && mirrors(id.object));
-        let mut attributes_of = Vec::new();
-        if !scene.geometry.attributes.is_empty() {
-            attributes_of.resize(scene.geometry.len(), NOTHING);
-            for (place, (primitive, _)) in (0..).zip(&scene.geometry.attributes) {
-                attributes_of[*primitive as usize] = place;
-            }
-        }
         Self {
             generation: Some(scene.generation),
             material_of: scene.geometry.ids.iter().map(|id| scene.objects[id.object as usize].material).collect(),
-            attributes_of,
+            tangents: scene.geometry.extras.iter().any(|(_, extras)| extras.tangents != [Vec4::ZERO; 3]),
+            vertex_colors: scene.geometry.extras.iter().any(|(_, extras)| extras.colors != [Vec4::ONE; 3]),
+            attributes_of: places(scene.geometry.len(), &scene.geometry.attributes),
+            extras_of: places(scene.geometry.len(), &scene.geometry.extras),
             materials,
             opaque,
             transparent_bodies,
@@ -192,10 +254,29 @@ impl Tables {
         geometry.attributes.get(place as usize).map(|(_, attributes)| attributes)
     }
 
+    /// What the corners of a primitive carry besides, in the kernel's order.
+    #[inline]
+    pub fn extras<'a>(&self, geometry: &'a Geometry, primitive: PrimitiveIndex) -> Option<&'a VertexExtras> {
+        let place = *self.extras_of.get(primitive as usize)?;
+        geometry.extras.get(place as usize).map(|(_, extras)| extras)
+    }
+
     /// What blocks all light.
     pub fn opaque(&self) -> Opaque<'_> {
         if self.opaque.is_empty() { Opaque::All } else { Opaque::Listed(&self.opaque) }
     }
+}
+
+/// Where in a list each of `count` primitives has its entry, or [`NOTHING`]; empty if the list is.
+fn places<T>(count: usize, list: &[(PrimitiveIndex, T)]) -> Vec<u32> {
+    if list.is_empty() {
+        return Vec::new();
+    }
+    let mut places = vec![NOTHING; count];
+    for (place, (primitive, _)) in (0..).zip(list) {
+        places[*primitive as usize] = place;
+    }
+    places
 }
 
 #[cfg(test)]

@@ -204,9 +204,19 @@ impl<T> Material<T> {
         }
     }
 
-    /// Whether any light passes through.
+    /// Whether any light passes through, bent or straight.
     pub fn is_transparent(&self) -> bool {
-        self.transparency != Vec3::ZERO
+        self.transparency != Vec3::ZERO || self.is_blended()
+    }
+
+    /// Whether what lies straight behind it shines through.
+    pub fn is_blended(&self) -> bool {
+        self.alpha == Alpha::Blend
+    }
+
+    /// Whether even closed shapes of it bound no body.
+    pub fn is_thin(&self) -> bool {
+        self.thin || self.is_blended()
     }
 
     /// The same material with its textures named in another way.

@@ -8,6 +8,9 @@ use fearless_simd::prelude::*;
 use glam::{Affine3A, Mat3A, Vec3};
 use std::f32::consts::{PI, TAU};
 
+/// Lane mask of native width.
+type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
+
 /// How a point of an object gets its texture coordinates. All of it in the object's own space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mapping {
@@ -57,27 +60,20 @@ pub struct Object {
 
 impl Object {
     /// Texture coordinates of points in the world with their geometric normals. `sides` are the lanes that lie on the
-    /// object's first primitive: the side of a cylinder or cone. `own` are the coordinates that triangles carry.
+    /// object's first primitive: the side of a cylinder or cone. 0 where triangles carry their own.
     #[inline(always)]
     pub fn texture_coordinates<S: Simd>(
         &self,
         simd: S,
         position: V3<S::f32s>,
         normal: V3<S::f32s>,
-        sides: <S::f32s as SimdBase<S>>::Mask,
-        own: [S::f32s; 2],
+        sides: Mask<S>,
     ) -> [S::f32s; 2] {
-        let p = match &self.world_to_object {
-            None => position,
-            Some(m) => linear(simd, &m.matrix3, position) + V3::splat(simd, m.translation.into()),
-        };
+        let p = self.to_object(simd, position);
         match self.mapping {
             Mapping::Planar { u, v } => planar(simd, p, [u, v]),
             Mapping::BoxFaces => {
-                let normal = self.to_object_normals(simd, normal);
-                let (x, y, z) = (normal.x.abs(), normal.y.abs(), normal.z.abs());
-                let along_z = z.simd_gt(x.max(y));
-                let along_x = !along_z & !y.simd_gt(x);
+                let [along_x, along_z] = self.faces(simd, normal);
                 [along_x.select(p.y, p.x), along_z.select(p.y, p.z)]
             }
             Mapping::Sphere { center } => {
@@ -93,8 +89,73 @@ impl Object {
                 let caps = planar(simd, p, axes);
                 [sides.select(around[0], caps[0]), sides.select(around[1], caps[1])]
             }
-            Mapping::Vertex => own,
+            Mapping::Vertex => [S::f32s::splat(simd, 0.0); 2],
         }
+    }
+
+    /// How [`texture_coordinates`](Self::texture_coordinates) grow from point to point, per unit of length in the world.
+    #[inline(always)]
+    pub fn texture_gradients<S: Simd>(
+        &self,
+        simd: S,
+        position: V3<S::f32s>,
+        normal: V3<S::f32s>,
+        sides: Mask<S>,
+    ) -> [V3<S::f32s>; 2] {
+        let p = self.to_object(simd, position);
+        let zero = S::f32s::splat(simd, 0.0);
+        let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| V3::splat(simd, axis));
+        let own = match self.mapping {
+            Mapping::Planar { u, v } => [V3::splat(simd, u), V3::splat(simd, v)],
+            Mapping::BoxFaces => {
+                let [along_x, along_z] = self.faces(simd, normal);
+                [V3::select(along_x, y, x), V3::select(along_z, y, z)]
+            }
+            Mapping::Sphere { center } => {
+                let d = p - V3::splat(simd, center);
+                let across2 = (d.x * d.x + d.z * d.z).max(f32::MIN_POSITIVE);
+                let across = across2.sqrt();
+                let around = V3::new(-d.z, zero, d.x).scale(S::f32s::splat(simd, 1.0 / TAU) / across2);
+                let level = V3::new(d.x, zero, d.z).scale(d.y / across);
+                let up = (V3::new(zero, across, zero) - level).scale(S::f32s::splat(simd, 1.0 / PI) / d.dot(d));
+                [around, up]
+            }
+            Mapping::Axial { base, axis } => {
+                let axes = plane_axes(axis);
+                let [a, b] = planar(simd, p - V3::splat(simd, base), axes);
+                let [along_a, along_b] = axes.map(|axis| V3::splat(simd, axis));
+                let inverse = S::f32s::splat(simd, 1.0 / TAU) / (a * a + b * b).max(f32::MIN_POSITIVE);
+                let around = (along_b.scale(a) - along_a.scale(b)).scale(inverse);
+                [V3::select(sides, around, along_a), V3::select(sides, V3::splat(simd, axis), along_b)]
+            }
+            Mapping::Vertex => [V3::all(zero); 2],
+        };
+        match &self.world_to_object {
+            None => own,
+            Some(m) => {
+                let transposed = m.matrix3.transpose();
+                let [u, v] = own;
+                [linear(simd, &transposed, u), linear(simd, &transposed, v)]
+            }
+        }
+    }
+
+    /// Points of the world in the object's own space.
+    #[inline(always)]
+    fn to_object<S: Simd>(&self, simd: S, position: V3<S::f32s>) -> V3<S::f32s> {
+        match &self.world_to_object {
+            None => position,
+            Some(m) => linear(simd, &m.matrix3, position) + V3::splat(simd, m.translation.into()),
+        }
+    }
+
+    /// The lanes that face along the object's x axis, and those that face along z; the others face along y.
+    #[inline(always)]
+    fn faces<S: Simd>(&self, simd: S, normal: V3<S::f32s>) -> [Mask<S>; 2] {
+        let normal = self.to_object_normals(simd, normal);
+        let (x, y, z) = (normal.x.abs(), normal.y.abs(), normal.z.abs());
+        let along_z = z.simd_gt(x.max(y));
+        [!along_z & !y.simd_gt(x), along_z]
     }
 
     /// Normals of the world in the object's own space; their lengths may change.

@@ -1,23 +1,13 @@
 //! Textures: images and checkers, looked up by surface coordinates.
 
 use super::texels::{Texel, Texels};
+pub use crate::geometry::Wrap;
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::Vec3;
 use std::sync::Arc;
 use std::sync::LazyLock;
-
-/// What lies beyond the edges of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Wrap {
-    /// The picture again.
-    Repeat,
-    /// The picture mirrored, and again.
-    Mirror,
-    /// The outermost texels.
-    Clamp,
-}
 
 /// How values are taken from those around.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

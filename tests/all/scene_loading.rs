@@ -9,6 +9,7 @@ use raywalk::math::{SimdToken, dispatch};
 use raywalk::scene::light::{Falloff, LightKind};
 use raywalk::scene::material::{ColorSource, Model};
 use raywalk::scene::object::Mapping;
+use raywalk::scene::texture::Coordinates;
 use raywalk::scene::{LoadOptions, Material, Texture};
 
 fn close(a: Vec3, b: Vec3) -> bool {
@@ -76,7 +77,7 @@ fn materials_get_the_documented_defaults() {
     assert_eq!(glass.ior, 1.5);
     assert!(matches!(metal.model, Model::MetallicRoughness { metallic: 1.0, roughness: 1.0, .. }));
     assert!(matches!(rough.model, Model::MetallicRoughness { metallic: 1.0, roughness: 0.5, .. }));
-    assert_eq!(rough.color, ColorSource::Constant(Vec3::ONE));
+    assert_eq!(rough.color, ColorSource::constant(Vec3::ONE));
 }
 
 #[test]
@@ -97,9 +98,9 @@ fn colours_are_linear_numbers_or_decoded_srgb() {
     let colors: Vec<Vec3> = scene
         .materials
         .iter()
-        .map(|m| match m.color {
-            ColorSource::Constant(color) => color,
-            ColorSource::Texture(_) => panic!("constants only"),
+        .map(|m| {
+            assert_eq!(m.color.texture, None);
+            m.color.factor
         })
         .collect();
     assert_eq!(colors[0], Vec3::splat(0.5));
@@ -199,5 +200,6 @@ fn a_checker_starts_with_its_first_colour() {
 
 /// The red that a texture holds at (u, v).
 fn red_at<S: Simd>(simd: S, texture: &Texture, u: f32, v: f32) -> f32 {
-    texture.sample(simd, [S::f32s::splat(simd, u), S::f32s::splat(simd, v)], 1).x[0]
+    let uv = [S::f32s::splat(simd, u), S::f32s::splat(simd, v)];
+    texture.sample(simd, &Coordinates { uv, spread2: None }, 1).color.x[0]
 }

@@ -4,7 +4,7 @@ use super::list::{Candidates, Member};
 use super::outline::Outline;
 use super::projection::{Beam, Cover};
 use crate::geometry::bvh::{Bvh, Child, Leaf, WIDTH};
-use crate::geometry::primitive::{Cone, Disk, Plane, Sphere, Triangle, for_each_primitive};
+use crate::geometry::primitive::{Cone, Cutout, Disk, Plane, Sphere, Triangle, for_each_primitive};
 use crate::geometry::traverse::{Pending, STACK, Stack};
 use crate::geometry::{BLOCK, PrimitiveKind, Search};
 use fearless_simd::prelude::*;

@@ -38,7 +38,7 @@ impl Random {
             PrimitiveKind::Sphere => Shape::Sphere { center, radius: size },
             PrimitiveKind::Plane => Shape::Plane { point: center, normal: self.direction() },
             PrimitiveKind::Disk => Shape::Disk { center, normal: self.direction(), radius: size },
-            PrimitiveKind::Triangle => {
+            PrimitiveKind::Triangle | PrimitiveKind::Cutout => {
                 Shape::Triangle { vertices: [(); 3].map(|()| center + self.point() * (size * 2.0)) }
             }
             PrimitiveKind::Cone => Shape::Cone {
@@ -63,11 +63,8 @@ fn case(random: &mut Random, kind: PrimitiveKind, parallel: bool) -> Case {
     let scale = 10_f32.powf(random.within(-4.0, 4.0));
     let place = random.point() * scale * 10_f32.powf(random.within(-1.0, 2.0));
     let count = if kind == PrimitiveKind::Plane { 5 } else { 60 };
-    let parts = (0..count).map(|object| Part {
-        shape: random.shape(kind, place, scale),
-        id: PrimitiveId { object, primitive: 0 },
-        attributes: None,
-    });
+    let parts =
+        (0..count).map(|object| Part::new(random.shape(kind, place, scale), PrimitiveId { object, primitive: 0 }));
     let geometry = Geometry::build(parts.collect());
     let apex = place + random.point() * scale * 2.0;
     let forward = (place + random.point() * (scale * 0.7) - apex).normalize_or(Vec3::Z);
@@ -192,11 +189,7 @@ fn along_the_axis(random: &mut Random, parallel: bool) -> Case {
         let center = base + axis * (length + random.within(0.5, 2.0)) + random.point();
         shapes.push(Shape::Sphere { center, radius: random.within(0.05, 0.3) });
     }
-    let parts = (0..).zip(shapes).map(|(object, shape)| Part {
-        shape,
-        id: PrimitiveId { object, primitive: 0 },
-        attributes: None,
-    });
+    let parts = (0..).zip(shapes).map(|(object, shape)| Part::new(shape, PrimitiveId { object, primitive: 0 }));
     let geometry = Geometry::build(parts.collect());
     let off = if random.within(0.0, 1.0) < 0.5 { 0.0 } else { 10_f32.powf(random.within(-8.0, -2.0)) };
     let apex = base - axis * random.within(0.5, 10.0) + random.point() * off;

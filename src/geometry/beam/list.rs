@@ -2,7 +2,7 @@
 
 use super::outline::{Outline, is_behind};
 use super::projection::{Beam, Cover};
-use crate::geometry::primitive::{Cone, Disk, Plane, Sphere, Triangle, for_each_primitive};
+use crate::geometry::primitive::{Cone, Cutout, Disk, Plane, Sphere, Triangle, for_each_primitive};
 use crate::geometry::{BLOCK, PrimitiveIndex};
 use crate::math::Lanes;
 use fearless_simd::Simd;

@@ -3,7 +3,7 @@
 use super::list::{Candidates, Member};
 use super::outline::Outline;
 use super::projection::Points;
-use crate::geometry::primitive::{Cone, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
+use crate::geometry::primitive::{Cone, Cutout, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use crate::geometry::traverse::test_place;
 use crate::geometry::{PrimitiveIndex, Rays, Search, Visitor};
 use crate::math::{Lanes, V3};

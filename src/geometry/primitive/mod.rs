@@ -5,12 +5,14 @@
 //! and gives the same bits either way.
 
 pub mod cone;
+pub mod cutout;
 pub mod disk;
 pub mod plane;
 pub mod sphere;
 pub mod triangle;
 
 pub use cone::Cone;
+pub use cutout::Cutout;
 pub use disk::Disk;
 pub use plane::Plane;
 pub use sphere::Sphere;
@@ -30,6 +32,7 @@ macro_rules! for_each_primitive {
             Triangle 10 triangles 19,
             Disk 7 disks 11,
             Cone 9 cones 9,
+            Cutout 10 cutouts 19,
             Plane 4 planes 9,
         }
     };
@@ -55,6 +58,8 @@ pub struct SurfacePoint<F> {
 pub trait Kernel<const N: usize> {
     /// Whether [`intersect`](Self::intersect) uses more of the rays than origin and direction.
     const NEEDS_FRAME: bool = false;
+    /// Whether hits have to be held against [holes](super::holes).
+    const HAS_HOLES: bool = false;
 
     /// The least box around the primitive; infinite for planes.
     fn bounds(fields: &[f32; N]) -> Aabb;

@@ -13,12 +13,14 @@ use crate::math::V3;
 use crate::render::film::TILE;
 use crate::render::frame::Frame;
 use crate::render::gather::{Hits, surfaces_of_one};
-use crate::render::materials::{Materials, OneMaterial};
+use crate::render::materials::OneMaterial;
 use crate::render::queue::{MOST_LANES, RayQueue};
 use crate::render::samples::{BLOCK, CELL, Colors};
 use crate::render::shade::{self, Paint};
 use crate::render::shadow;
-use crate::render::tables::{FlatMaterial, Row};
+use crate::render::skin::Skin;
+use crate::render::tables::FlatMaterial;
+use crate::render::texture_place::Sight;
 use crate::render::tile::{Pass, milliseconds_since};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -111,9 +113,9 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &
 
 /// In which paints a material's patches are shaded; none if they are not to be interpolated.
 fn paints(material: &FlatMaterial) -> &'static [Paint] {
-    let textured = material.color_texture.is_some();
+    let textured = material.maps.color.is_some();
     // Light off a metallic-roughness surface is not a linear function of its colour.
-    if material.emission_texture.is_some() || textured && material.metallic_roughness {
+    if material.maps.emission.is_some() || textured && material.metallic_roughness {
         &[]
     } else if !textured {
         &[Paint::Own]
@@ -147,7 +149,11 @@ impl Smooth {
                 let cell = block * CELLS_PER_BLOCK + at;
                 let is_certain = worker.certain_cells >> cell & 1 == 1;
                 if let Some(primitive) = common_primitive(area, is_certain, &worker.rays.primitive) {
-                    let paints = paints(&tables.materials[tables.material_of[primitive as usize] as usize]);
+                    let material = &tables.materials[tables.material_of[primitive as usize] as usize];
+                    if material.is_uneven() || tables.extras(&frame.scene.geometry, primitive).is_some() {
+                        continue;
+                    }
+                    let paints = paints(material);
                     *found = Some((Patch { cell: cell as u8, start: area.start as u32, primitive }, paints));
                 }
             }
@@ -304,10 +310,8 @@ fn texture_color<S: Simd>(
     let t = S::f32s::from_slice(simd, &rays.t[lanes]);
     let direction = rays.direction.load(simd, at);
     let surfaces = surfaces_of_one(simd, frame, &hits, primitive, rays.origins(simd, at), direction, t);
-    let material = OneMaterial::of(frame, primitive);
-    let mut color = material.triple(simd, Row::Color);
-    material.look_up(simd, frame, &hits, &surfaces, &mut color, &mut V3::zero(simd));
-    color
+    let sight = Sight::new(frame, &surfaces, direction, t);
+    Skin::of(simd, frame, &hits, &surfaces, &OneMaterial::of(frame, primitive), &sight).color
 }
 
 /// Counts the pixels of the cells that were filled as interpolated, and no longer as what they were.

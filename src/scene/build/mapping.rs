@@ -21,7 +21,7 @@ pub fn mapping(shape: &ShapeDesc) -> Mapping {
 /// A mesh without coordinates of its own is mapped like a box, each point by its dominant normal axis;
 /// a single triangle like the plane it lies in.
 fn of_mesh(mesh: &MeshDesc) -> Mapping {
-    if !mesh.uvs.is_empty() {
+    if !mesh.uvs.is_empty() || !mesh.uvs1.is_empty() {
         return Mapping::Vertex;
     }
     match (&mesh.vertices[..], &mesh.triangles[..]) {

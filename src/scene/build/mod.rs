@@ -2,6 +2,7 @@
 
 mod bounds;
 mod framing;
+mod holes;
 mod image;
 mod mapping;
 mod object;
@@ -21,6 +22,7 @@ use super::texture::ImageTexture;
 use super::{Light, Material, NamedCamera, Object, RenderDefaults, Scene, Texture};
 use crate::geometry::{Geometry, Part};
 use glam::Vec3;
+use holes::HoleMaps;
 use image::ImageStore;
 use placement::Placement;
 use std::borrow::Cow;
@@ -36,6 +38,7 @@ pub struct SceneBuilder {
     name: String,
     limits: Limits,
     images: ImageStore,
+    holes: HoleMaps,
     parts: Vec<Part>,
     objects: Vec<Object>,
     materials: Vec<Material>,
@@ -58,6 +61,7 @@ impl SceneBuilder {
             name: name.to_owned(),
             images: ImageStore::new(files, &limits),
             limits,
+            holes: HoleMaps::default(),
             parts: Vec::new(),
             objects: Vec::new(),
             materials: Vec::new(),
@@ -164,7 +168,8 @@ impl SceneBuilder {
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
         }
         let start = Instant::now();
-        let geometry = Geometry::build(self.parts);
+        let mut geometry = Geometry::build(self.parts);
+        geometry.hole_maps = self.holes.maps;
         let build_ms = start.elapsed().as_secs_f64() * 1e3;
         Scene {
             name: self.name,

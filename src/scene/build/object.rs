@@ -1,15 +1,16 @@
 //! Objects: the tree of the file flattened into world-space shapes.
 
+use super::holes::Cut;
 use super::mapping::mapping;
-use super::parts::ObjectParts;
+use super::parts::{Corners, ObjectParts};
 use super::placement::Placement;
 use super::{Names, SceneBuilder, index};
-use crate::geometry::{Shape, VertexAttributes};
+use crate::geometry::{Shape, VertexAttributes, VertexExtras};
 use crate::scene::Object;
 use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
 use crate::scene::desc::{MeshDesc, ObjectDesc, ShapeDesc};
 use crate::scene::limits::exceeded;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 
 /// Primitives of capped cylinders and cones.
 const SIDE: u32 = 0;
@@ -48,13 +49,18 @@ impl SceneBuilder {
         }
         let material = self.material(object.material.as_ref(), materials)?;
         let id = index(self.objects.len(), object.at, "objects")?;
+        let cut = match &object.shape {
+            ShapeDesc::Mesh(mesh) => self.holes.cut(material, &self.materials, &self.textures, mesh),
+            _ => None,
+        };
+        let is_thin = self.materials[material as usize].is_thin();
         let mut parts = ObjectParts::new(&mut self.parts, &self.limits, id, object.at);
-        add_shape(object, placement, &mut parts)?;
+        add_shape(object, placement, cut.as_ref(), &mut parts)?;
         self.objects.push(Object {
             name: object.name.clone(),
             kind: object.kind,
             material,
-            body: is_body(object),
+            body: is_body(object) && !is_thin,
             mapping: mapping(&object.shape),
             world_to_object: placement.world_to_object(),
             bounds: parts.finish(warnings),
@@ -74,7 +80,7 @@ fn is_body(object: &ObjectDesc) -> bool {
     }
 }
 
-fn add_shape(object: &ObjectDesc, placement: &Placement, parts: &mut ObjectParts) -> Outcome<()> {
+fn add_shape(object: &ObjectDesc, placement: &Placement, cut: Option<&Cut>, parts: &mut ObjectParts) -> Outcome<()> {
     let scale = |radius: f64| scaled_radius(radius, placement, object);
     match &object.shape {
         ShapeDesc::Sphere { center, radius } => {
@@ -102,7 +108,7 @@ fn add_shape(object: &ObjectDesc, placement: &Placement, parts: &mut ObjectParts
             let (u, v) = (*corner + *edge_u, *corner + *edge_v);
             add_quad(0, [*corner, u, u + *edge_v, v], placement, parts)
         }
-        ShapeDesc::Mesh(mesh) => add_mesh(mesh, placement, parts),
+        ShapeDesc::Mesh(mesh) => add_mesh(mesh, placement, cut, parts),
         ShapeDesc::Group { .. } => Ok(()),
     }
 }
@@ -169,22 +175,33 @@ fn add_box(min: DVec3, max: DVec3, placement: &Placement, parts: &mut ObjectPart
 /// Four corners in a plane, in order: two triangles of one primitive.
 fn add_quad(primitive: u32, corners: [DVec3; 4], placement: &Placement, parts: &mut ObjectParts) -> Outcome<()> {
     let [a, b, c, d] = corners.map(|p| placement.point(p));
-    parts.push_triangle(primitive, [a, b, c], None, placement)?;
-    parts.push_triangle(primitive, [a, c, d], None, placement)
+    parts.push_triangle(primitive, [a, b, c], Corners::default(), placement)?;
+    parts.push_triangle(primitive, [a, c, d], Corners::default(), placement)
 }
 
-fn add_mesh(mesh: &MeshDesc, placement: &Placement, parts: &mut ObjectParts) -> Outcome<()> {
+fn add_mesh(mesh: &MeshDesc, placement: &Placement, cut: Option<&Cut>, parts: &mut ObjectParts) -> Outcome<()> {
     parts.reserve(mesh.triangles.len())?;
     let points: Vec<DVec3> = mesh.vertices.iter().map(|p| placement.point(*p)).collect();
     let normals: Vec<Vec3> = mesh.normals.iter().map(|n| placement.normal(*n).as_vec3()).collect();
+    let tangents: Vec<Vec4> = mesh.tangents.iter().map(|t| placement.tangent(*t)).collect();
+    let has_attributes = !normals.is_empty() || !mesh.uvs.is_empty();
+    let has_extras = !mesh.uvs1.is_empty() || !mesh.colors.is_empty() || !tangents.is_empty();
     for (primitive, triangle) in (0..).zip(&mesh.triangles) {
         let corners = triangle.map(|i| i as usize);
-        let attributes = VertexAttributes {
+        let attributes = has_attributes.then(|| VertexAttributes {
             normals: (!normals.is_empty()).then(|| corners.map(|i| normals[i])),
             uvs: (!mesh.uvs.is_empty()).then(|| corners.map(|i| mesh.uvs[i].as_vec2())),
-        };
-        let has_attributes = attributes.normals.is_some() || attributes.uvs.is_some();
-        parts.push_triangle(primitive, corners.map(|i| points[i]), has_attributes.then_some(attributes), placement)?;
+        });
+        let extras = has_extras.then(|| {
+            Box::new(VertexExtras {
+                uvs1: corners.map(|i| mesh.uvs1.get(i).copied().unwrap_or_default()),
+                colors: corners.map(|i| mesh.colors.get(i).copied().unwrap_or(Vec4::ONE)),
+                tangents: corners.map(|i| tangents.get(i).copied().unwrap_or_default()),
+            })
+        });
+        let holes = cut.map(|cut| Box::new(cut.corners(mesh, corners)));
+        let carried = Corners { attributes, extras, holes };
+        parts.push_triangle(primitive, corners.map(|i| points[i]), carried, placement)?;
     }
     Ok(())
 }
@@ -197,6 +214,7 @@ mod tests {
     use crate::scene::desc::SceneDesc;
     use crate::scene::files::Files;
     use glam::{DAffine3, DVec2};
+    use std::sync::Arc;
 
     /// The parts of one object under a transform.
     fn parts_of(shape: ShapeDesc, transform: Option<DAffine3>) -> Vec<Part> {
@@ -288,9 +306,11 @@ mod tests {
             triangles: vec![[0, 0, 1], [0, 1, 2]],
             normals: vec![DVec3::Z, DVec3::new(1.0, 0.0, 1.0), DVec3::new(0.0, 1.0, 1.0)],
             uvs: vec![DVec2::ZERO, DVec2::X, DVec2::Y],
+            ..MeshDesc::default()
         };
-        let plain = parts_of(ShapeDesc::Mesh(mesh.clone()), None);
-        let turned = parts_of(ShapeDesc::Mesh(mesh), mirrored());
+        let mesh = ShapeDesc::Mesh(Arc::new(mesh));
+        let plain = parts_of(mesh.clone(), None);
+        let turned = parts_of(mesh, mirrored());
         for parts in [&plain, &turned] {
             // The first triangle has no area; the second keeps its number.
             let [part] = &parts[..] else { panic!("one triangle is left") };
@@ -307,7 +327,7 @@ mod tests {
     #[test]
     fn a_planes_solid_side_follows_a_mirror() {
         let plane = ShapeDesc::Plane { point: DVec3::X, normal: DVec3::X };
-        let [part] = parts_of(plane, mirrored())[..] else { panic!("one plane") };
+        let [part] = &parts_of(plane, mirrored())[..] else { panic!("one plane") };
         assert_eq!(part.shape, Shape::Plane { point: Vec3::NEG_X, normal: Vec3::NEG_X });
     }
 }

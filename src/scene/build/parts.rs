@@ -2,10 +2,32 @@
 
 use super::bounds::shape_bounds;
 use super::placement::Placement;
-use crate::geometry::{Aabb, Part, PrimitiveId, Shape, VertexAttributes};
+use crate::geometry::{Aabb, Holes, Part, PrimitiveId, Shape, VertexAttributes, VertexExtras};
 use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
 use crate::scene::limits::{Limits, exceeded};
 use glam::{DVec3, Vec3};
+
+/// What the corners of a triangle carry.
+#[derive(Clone, Debug, Default)]
+pub struct Corners {
+    /// Normals and texture coordinates.
+    pub attributes: Option<VertexAttributes>,
+    /// What few triangles carry.
+    pub extras: Option<Box<VertexExtras>>,
+    /// Where they lie on a map of holes.
+    pub holes: Option<Box<Holes>>,
+}
+
+impl Corners {
+    /// With the corners taken in another order.
+    fn reordered(self, order: [usize; 3]) -> Self {
+        Self {
+            attributes: self.attributes.map(|attributes| attributes.reordered(order)),
+            extras: self.extras.map(|extras| Box::new(extras.reordered(order))),
+            holes: self.holes.map(|holes| Box::new(holes.reordered(order))),
+        }
+    }
+}
 
 /// Collects the parts of one object, in ascending order of their primitive, and what all of them share.
 pub struct ObjectParts<'a> {
@@ -40,7 +62,7 @@ impl<'a> ObjectParts<'a> {
 
     /// Adds a shape.
     pub fn push(&mut self, primitive: u32, shape: Shape) -> Outcome<()> {
-        self.push_with(primitive, shape, None)
+        self.push_with(primitive, shape, Corners::default())
     }
 
     /// Adds a triangle of world-space corners unless rounding has left it no area; `placement` says whether
@@ -49,7 +71,7 @@ impl<'a> ObjectParts<'a> {
         &mut self,
         primitive: u32,
         corners: [DVec3; 3],
-        attributes: Option<VertexAttributes>,
+        carried: Corners,
         placement: &Placement,
     ) -> Outcome<()> {
         let [a, b, c] = corners.map(|p| p.as_vec3());
@@ -61,16 +83,13 @@ impl<'a> ObjectParts<'a> {
             return Ok(());
         }
         if placement.is_mirrored() {
-            let attributes = attributes.map(|VertexAttributes { normals, uvs }| VertexAttributes {
-                normals: normals.map(|[a, b, c]| [a, c, b]),
-                uvs: uvs.map(|[a, b, c]| [a, c, b]),
-            });
-            return self.push_with(primitive, Shape::Triangle { vertices: [a, c, b] }, attributes);
+            let carried = carried.reordered([0, 2, 1]);
+            return self.push_with(primitive, Shape::Triangle { vertices: [a, c, b] }, carried);
         }
-        self.push_with(primitive, Shape::Triangle { vertices: [a, b, c] }, attributes)
+        self.push_with(primitive, Shape::Triangle { vertices: [a, b, c] }, carried)
     }
 
-    fn push_with(&mut self, primitive: u32, shape: Shape, attributes: Option<VertexAttributes>) -> Outcome<()> {
+    fn push_with(&mut self, primitive: u32, shape: Shape, carried: Corners) -> Outcome<()> {
         let bounds = shape_bounds(&shape);
         let is_plane = matches!(shape, Shape::Plane { .. });
         if !is_plane && !bounds.is_finite() {
@@ -82,7 +101,8 @@ impl<'a> ObjectParts<'a> {
         self.reserve(1)?;
         self.bounds = self.bounds.union(bounds);
         let id = PrimitiveId { object: self.object, primitive };
-        self.parts.push(Part { shape, id, attributes });
+        let Corners { attributes, extras, holes } = carried;
+        self.parts.push(Part { shape, id, attributes, extras, holes });
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! Where an object stands in the world: the product of the transforms above it, kept in f64.
 
 use crate::scene::desc::problem::{At, Outcome, Problem};
-use glam::{Affine3A, DAffine3, DMat3, DVec3};
+use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec4};
 
 /// How far squared scales along different directions may differ, relative to their size: a rotation
 /// matrix written with four digits still counts as uniform.
@@ -38,6 +38,13 @@ impl Placement {
     /// The unit normal in the world of a surface with `normal`; on the same side of the surface, mirrored or not.
     pub fn normal(&self, normal: DVec3) -> DVec3 {
         if self.transformed { (self.normals * normal).normalize_or_zero() } else { normal.normalize_or_zero() }
+    }
+
+    /// The unit direction in the world of a surface's tangent, with the sign of its bitangent.
+    pub fn tangent(&self, tangent: Vec4) -> Vec4 {
+        let along = (self.to_world.matrix3 * tangent.truncate().as_dvec3()).normalize_or_zero();
+        let sign = if self.is_mirrored() { -tangent.w } else { tangent.w };
+        along.as_vec3().extend(sign)
     }
 
     /// Whether it swaps left and right, and with that the winding of triangles.

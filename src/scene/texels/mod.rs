@@ -8,6 +8,7 @@ use crate::math::V3;
 use crate::math::power::log2;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use std::sync::Arc;
 
 /// Lane mask of native width.
 type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
@@ -130,8 +131,18 @@ impl Texels {
 
     /// Whether some texel is not wholly opaque.
     pub fn has_holes(&self) -> bool {
+        self.full_size().any(|[.., opacity]| opacity != u8::MAX)
+    }
+
+    /// Opacities of the full size, row by row from the top.
+    pub fn opacities(&self) -> Arc<[u8]> {
+        self.full_size().map(|[.., opacity]| opacity).collect()
+    }
+
+    /// The texels of the full size, row by row from the top.
+    fn full_size(&self) -> impl Iterator<Item = [u8; 4]> {
         let [width, height] = self.size(0);
-        (0..height).any(|y| (0..width).any(|x| self.texel(0, x, y)[3] != u8::MAX))
+        (0..height).flat_map(move |y| (0..width).map(move |x| self.texel(0, x, y)))
     }
 
     /// Filtered lookup for the lanes in the bit set `lanes`; others get anything. The picture is 1 wide and 1 high;

@@ -39,12 +39,16 @@ struct Ray {
     origin: DVec3,
     direction: DVec3,
     range: (f64, f64),
+    /// How long the way from the eye to the origin is.
+    way: f64,
+    /// How much wider it grows per unit of length.
+    spread: f64,
 }
 
 impl Ray {
     /// A ray that leaves a surface.
-    fn leaving(origin: DVec3, direction: DVec3) -> Self {
-        Self { origin, direction: direction.normalize(), range: (0.0, f64::INFINITY) }
+    fn leaving(&self, origin: DVec3, direction: DVec3, way: f64) -> Self {
+        Self { origin, direction: direction.normalize(), range: (0.0, f64::INFINITY), way, spread: self.spread }
     }
 }
 
@@ -77,7 +81,8 @@ impl<'a> Tracer<'a> {
         let direction = f
             + r * ((2.0 * at.x / width - 1.0) * tangent * width / height)
             + u * ((1.0 - 2.0 * at.y / height) * tangent);
-        let ray = Ray { origin: eye.as_dvec3(), direction: direction.normalize(), range: (near.into(), far.into()) };
+        let (direction, range) = (direction.normalize(), (near.into(), far.into()));
+        let ray = Ray { origin: eye.as_dvec3(), direction, range, way: 0.0, spread: 2.0 * tangent / height };
         let mut path = 0;
         let color = self.trace(ray, self.depth, &self.around_eye(), &mut path);
         Seen { color, path, depth: self.closest(&ray).map_or(f64::INFINITY, |(t, _)| t) }
@@ -135,8 +140,11 @@ impl<'a> Tracer<'a> {
         let object = &self.scene.objects[hit.object as usize];
         let material = self.material(hit.object);
         let mut surface = hit.surface(ray.origin, ray.direction, t);
-        let (color, cell) = look_up(self.scene, object, hit.primitive, material.color, &surface);
-        let (emission, _) = look_up(self.scene, object, hit.primitive, material.emission, &surface);
+        let way = ray.way + t;
+        let slant = ray.direction.dot(surface.geometric).abs().max(1e-3);
+        let width = way * ray.spread / slant.sqrt();
+        let (color, cell) = look_up(self.scene, object, hit.primitive, material.color, &surface, width);
+        let (emission, _) = look_up(self.scene, object, hit.primitive, material.emission, &surface, width);
         note(path, cell as u64);
         let entering = ray.direction.dot(surface.geometric) <= 0.0;
         if !entering {
@@ -174,7 +182,7 @@ impl<'a> Tracer<'a> {
         }
         let mut out = local;
         if reflected != DVec3::ZERO {
-            let ray = Ray::leaving(surface.position + surface.geometric * self.margin, mirrored);
+            let ray = ray.leaving(surface.position + surface.geometric * self.margin, mirrored, way);
             out += reflected * self.trace(ray, rays_left - 1, media, path);
         }
         if let Some(direction) = bent.filter(|_| refracted != DVec3::ZERO) {
@@ -183,7 +191,7 @@ impl<'a> Tracer<'a> {
                 (true, true) => [media, &[hit.object]].concat(),
                 (true, false) => without,
             };
-            let ray = Ray::leaving(surface.position - surface.geometric * self.margin, direction);
+            let ray = ray.leaving(surface.position - surface.geometric * self.margin, direction, way);
             out += refracted * color * self.trace(ray, rays_left - 1, &media, path);
         }
         out
@@ -253,7 +261,7 @@ impl<'a> Tracer<'a> {
                     return DVec3::ZERO;
                 }
                 let surface = primitive.surface(from, to_light, t);
-                let (color, cell) = look_up(self.scene, object, primitive.primitive, material.color, &surface);
+                let (color, cell) = look_up(self.scene, object, primitive.primitive, material.color, &surface, 0.0);
                 note(path, cell as u64);
                 arriving *= material.transparency.as_dvec3() * color;
             }

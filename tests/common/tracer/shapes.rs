@@ -28,6 +28,8 @@ pub struct Surface {
     pub shading: DVec3,
     /// The texture coordinates that triangles carry.
     pub uv: Option<DVec2>,
+    /// How those grow along the triangle.
+    pub uv_gradients: Option<[DVec3; 2]>,
 }
 
 /// All primitives, in the order of their identity.
@@ -38,7 +40,9 @@ pub fn primitives(geometry: &Geometry) -> Vec<Primitive> {
             let (block, place) = (slot.block as usize, usize::from(slot.place));
             let fields: Vec<f64> = match slot.kind {
                 PrimitiveKind::Sphere => geometry.spheres[block].get(place).map(f64::from).to_vec(),
-                PrimitiveKind::Triangle => geometry.triangles[block].get(place).map(f64::from).to_vec(),
+                PrimitiveKind::Triangle | PrimitiveKind::Cutout => {
+                    geometry.triangles_of(slot.kind)[block].get(place).map(f64::from).to_vec()
+                }
                 PrimitiveKind::Disk => geometry.disks[block].get(place).map(f64::from).to_vec(),
                 PrimitiveKind::Cone => geometry.cones[block].get(place).map(f64::from).to_vec(),
                 PrimitiveKind::Plane => geometry.planes[block].get(place).map(f64::from).to_vec(),
@@ -47,7 +51,7 @@ pub fn primitives(geometry: &Geometry) -> Vec<Primitive> {
             let attributes = geometry.attributes_of(i as u32);
             let shape = match slot.kind {
                 PrimitiveKind::Sphere => Shape::Sphere { center: vector(0), radius: fields[3] },
-                PrimitiveKind::Triangle => Shape::Triangle {
+                PrimitiveKind::Triangle | PrimitiveKind::Cutout => Shape::Triangle {
                     corners: [0, 3, 6].map(vector),
                     winding: fields[9],
                     normals: attributes.and_then(|a| a.normals).map(|n| n.map(|n| n.as_dvec3())),
@@ -113,7 +117,7 @@ impl Primitive {
     /// The surface where a ray meets it.
     pub fn surface(&self, origin: DVec3, direction: DVec3, t: f64) -> Surface {
         let position = origin + direction * t;
-        let flat = |geometric| Surface { position, geometric, shading: geometric, uv: None };
+        let flat = |geometric| Surface { position, geometric, shading: geometric, uv: None, uv_gradients: None };
         match self.shape {
             Shape::Sphere { center, .. } => flat((position - center).normalize()),
             Shape::Disk { normal, .. } => flat(normal),
@@ -130,7 +134,16 @@ impl Primitive {
                 let [u, v, w] = [weight(b, c), weight(c, a), weight(a, b)];
                 let smooth = normals.map(|[a, b, c]| (a * u + b * v + c * w).normalize());
                 let shading = smooth.map_or(geometric, |n| if n.dot(geometric) < 0.0 { -n } else { n });
-                Surface { position, geometric, shading, uv: uvs.map(|[a, b, c]| a * u + b * v + c * w) }
+                let uv_gradients = uvs.map(|corners| {
+                    // The gradient of each weight, across the opposite edge.
+                    let [of_a, of_b, of_c] =
+                        [(b, c), (c, a), (a, b)].map(|(from, to)| cross.cross(to - from) / cross.length_squared());
+                    let grows = |along: fn(DVec2) -> f64| {
+                        of_a * along(corners[0]) + of_b * along(corners[1]) + of_c * along(corners[2])
+                    };
+                    [grows(|uv| uv.x), grows(|uv| uv.y)]
+                });
+                Surface { position, geometric, shading, uv: uvs.map(|[a, b, c]| a * u + b * v + c * w), uv_gradients }
             }
         }
     }

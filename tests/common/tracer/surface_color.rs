@@ -8,14 +8,19 @@ use raywalk::scene::texture::{ImageTexture, srgb_to_linear};
 use raywalk::scene::{Object, Scene, Texture};
 use std::f64::consts::{PI, TAU};
 
-/// The colour of a surface, and a number that changes where the colour jumps.
-pub fn look_up(scene: &Scene, object: &Object, primitive: u32, source: ColorSource, surface: &Surface) -> (DVec3, i64) {
-    let texture = match source {
-        ColorSource::Constant(color) => return (color.as_dvec3(), 0),
-        ColorSource::Texture(texture) => &scene.textures[texture as usize],
-    };
+/// The colour of a surface seen by a ray that is `width` wide there, and a number that changes where the colour jumps.
+pub fn look_up(
+    scene: &Scene,
+    object: &Object,
+    primitive: u32,
+    source: ColorSource,
+    surface: &Surface,
+    width: f64,
+) -> (DVec3, i64) {
+    let factor = source.factor.as_dvec3();
+    let Some(lookup) = source.texture else { return (factor, 0) };
     let uv = coordinates(object, primitive, surface);
-    match texture {
+    let (color, cell) = match &scene.textures[lookup.texture as usize] {
         Texture::Checker { colors, size } => {
             let cell = (uv / f64::from(*size)).floor();
             let odd = (cell.x + cell.y).rem_euclid(2.0) != 0.0;
@@ -23,9 +28,27 @@ pub fn look_up(scene: &Scene, object: &Object, primitive: u32, source: ColorSour
         }
         Texture::Image(image) => {
             let cell = (uv / f64::from(image.size)).floor();
-            (sample(image, uv / f64::from(image.size)), (cell.x as i64) * 1009 + cell.y as i64)
+            let spread = gradients(object, primitive, surface).map(|gradient| gradient.length() * width);
+            (sample(image, uv / f64::from(image.size), spread), (cell.x as i64) * 1009 + cell.y as i64)
         }
+    };
+    (factor * color, cell)
+}
+
+/// How texture coordinates grow along a surface, by differences.
+fn gradients(object: &Object, primitive: u32, surface: &Surface) -> [DVec3; 2] {
+    if let (Mapping::Vertex, Some(gradients)) = (object.mapping, surface.uv_gradients) {
+        return gradients;
     }
+    let mut gradients = [DVec3::ZERO; 2];
+    let across = surface.geometric.any_orthonormal_vector();
+    for step in [across, surface.geometric.cross(across)].map(|direction| direction * 1e-6) {
+        let at = |position| coordinates(object, primitive, &Surface { position, ..*surface });
+        let grown = (at(surface.position + step) - at(surface.position - step)) / 2.0;
+        gradients[0] += step * (grown.x / 1e-12);
+        gradients[1] += step * (grown.y / 1e-12);
+    }
+    gradients
 }
 
 fn coordinates(object: &Object, primitive: u32, surface: &Surface) -> DVec2 {
@@ -79,12 +102,20 @@ fn plane_axes(n: DVec3) -> [DVec3; 2] {
     }
 }
 
-/// Bilinear between texel centres, repeated, v upwards.
-fn sample(image: &ImageTexture, uv: DVec2) -> DVec3 {
-    let (width, height) = (i64::from(image.texels.width()), i64::from(image.texels.height()));
+/// Trilinear between sizes and texel centres, repeated, v upwards. `spread` is how far apart rays are along u and v.
+fn sample(image: &ImageTexture, uv: DVec2, spread: [f64; 2]) -> DVec3 {
+    let [width, height] = image.texels.size(0).map(|texels| f64::from(texels) / f64::from(image.size));
+    let last = image.texels.levels() - 1;
+    let level = (spread[0] * width).max(spread[1] * height).log2().clamp(0.0, last as f64);
+    let finer = sample_level(image, uv, level.floor() as usize);
+    finer.lerp(sample_level(image, uv, last.min(level.floor() as usize + 1)), level.fract())
+}
+
+fn sample_level(image: &ImageTexture, uv: DVec2, level: usize) -> DVec3 {
+    let [width, height] = image.texels.size(level).map(i64::from);
     let texel = |x: i64, y: i64| {
         let [x, y] = [x.rem_euclid(width), y.rem_euclid(height)].map(|place| place as u32);
-        let [r, g, b] = image.texels.texel(x, y).map(srgb_to_linear);
+        let [r, g, b, _] = image.texels.texel(level, x, y).map(srgb_to_linear);
         DVec3::new(r.into(), g.into(), b.into())
     };
     let (x, y) = (uv.x * width as f64 - 0.5, -uv.y * height as f64 - 0.5);

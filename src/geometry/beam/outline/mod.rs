@@ -2,6 +2,7 @@
 //! margins where it is to be missed, smaller where it is to cover.
 
 mod cone;
+mod cutout;
 mod disk;
 mod plane;
 mod sphere;

@@ -1,0 +1,29 @@
+//! Triangles with holes: the kernel of triangles, and a look at the [holes](crate::geometry::holes) where it hits.
+
+use super::{Kernel, SurfacePoint, Triangle};
+use crate::geometry::{Aabb, Rays};
+use crate::math::{Lanes, V3};
+use fearless_simd::Simd;
+
+/// The kernel of triangles with holes. Fields: as of [`Triangle`].
+#[derive(Debug)]
+pub struct Cutout;
+
+impl Kernel<10> for Cutout {
+    const NEEDS_FRAME: bool = true;
+    const HAS_HOLES: bool = true;
+
+    fn bounds(fields: &[f32; 10]) -> Aabb {
+        Triangle::bounds(fields)
+    }
+
+    #[inline(always)]
+    fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 10], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
+        Triangle::intersect(fields, rays, t_min)
+    }
+
+    #[inline(always)]
+    fn surface<S: Simd, F: Lanes<S>>(fields: &[F; 10], origin: V3<F>, direction: V3<F>, t: F) -> SurfacePoint<F> {
+        Triangle::surface(fields, origin, direction, t)
+    }
+}
