@@ -4,11 +4,12 @@
 //! panic on strides, types and indices that do not fit, and follow nodes in circles.
 
 use super::fault::{Fault, Read};
+use super::root::Root;
 use super::uri::{self, Target};
 use crate::scene::desc::map::shortened;
 use crate::scene::files::FileError;
 use crate::scene::limits::{Limits, exceeded};
-use gltf::json::{Index, Root, buffer};
+use gltf::json::{Index, buffer};
 use std::borrow::Cow;
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};

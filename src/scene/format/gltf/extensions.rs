@@ -2,8 +2,8 @@
 
 use super::fault::{Fault, Read, Report};
 use super::instancing;
+use super::root::Root;
 use crate::scene::desc::map::shortened;
-use gltf::json::Root;
 
 /// Extensions that are read in full.
 const KNOWN: &[&str] = &[

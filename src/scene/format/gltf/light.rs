@@ -12,7 +12,7 @@ use std::f32::consts::FRAC_PI_2;
 
 /// The lights of the scene, in the order of its nodes. Their `range` is left out: the square of the distance is enough.
 pub fn lights(document: &Document, nodes: &Nodes, report: &mut Report) -> Read<Vec<Light>> {
-    let extension = document.root.extensions.as_ref().and_then(|all| all.khr_lights_punctual.as_ref());
+    let extension = document.root.extensions.khr_lights_punctual.as_ref();
     let all: &[Punctual] = extension.map_or(&[], |extension| &extension.lights);
     let mut lights = Vec::new();
     for &node in &nodes.order {

@@ -5,7 +5,8 @@
 //! | file | what it reads |
 //! |---|---|
 //! | [`container`] | the chunks of a binary file |
-//! | [`document`] | JSON, buffers and buffer views; [`uri`] for where buffers are |
+//! | [`root`] | the JSON |
+//! | [`document`] | buffers and buffer views; [`uri`] for where buffers are |
 //! | [`extensions`] | which extensions the file needs |
 //! | [`accessor`] | elements of buffer views |
 //! | [`nodes`] | the tree of nodes; [`instancing`] for those that draw a mesh many times |
@@ -27,6 +28,7 @@ mod light;
 mod material;
 mod mesh;
 mod nodes;
+mod root;
 mod skin;
 mod tangents;
 mod texture;
@@ -42,14 +44,15 @@ use crate::scene::desc::{MaterialDesc, MeshDesc, NameRef, ObjectDesc, SceneDesc,
 use crate::scene::error::SceneError;
 use crate::scene::limits::{Limits, exceeded};
 use crate::scene::material::Alpha;
+use crate::settings::{Exposure, ToneMap};
 use container::Container;
 use document::{Document, get};
 use fault::{Fault, Read, Report};
 use glam::DAffine3;
-use gltf::json::Root;
 use mesh::{Drawn, Job};
 use nodes::Nodes;
 use rayon::prelude::*;
+use root::Root;
 use std::collections::HashMap;
 use std::sync::Arc;
 use texture::Textures;
@@ -97,6 +100,9 @@ fn describe(document: &Document, limits: &Limits, report: &mut Report) -> Read<S
     Ok(SceneDesc {
         render: RenderDefaults {
             max_depth: if see_through { DEPTH_WITH_BLENDING } else { render.max_depth },
+            // Lights are in candela and lux.
+            exposure: Exposure::Auto,
+            tone_map: ToneMap::Neutral,
             ..render
         },
         cameras: camera::cameras(document, &nodes, || bounds(&objects), report)?,
