@@ -9,6 +9,7 @@ mod cli;
 mod determinism;
 mod exactness;
 mod flat_mirrors;
+mod gltf;
 #[path = "../common/flips.rs"]
 mod flips;
 mod imports;

@@ -1,6 +1,6 @@
 //! A place to stand in an interior: on the floor, looking into the longest free direction.
 
-use super::probe::{Probe, around};
+use super::probe::{Met, Probe, around};
 use crate::geometry::Aabb;
 use crate::scene::Camera;
 use glam::Vec3;
@@ -16,10 +16,31 @@ const EYE_HEIGHT: f32 = 1.6;
 const EYE_SHARE: [f32; 2] = [0.15, 0.55];
 /// Directions that tell whether a place is enclosed.
 const LOOKS: usize = 96;
-/// Least share of directions that see the front of something, of a place inside.
+/// Least share of them that see the front of something, of a place inside.
 const ENCLOSED: f32 = 0.8;
-/// Directions tried for the view.
+/// Horizontal directions: of the walls, and tried for the view.
 const VIEWS: usize = 32;
+/// Least share of them that see the front of something: a table has no walls.
+const WALLED: f32 = 0.9;
+/// How many of them to either side of a view are in the picture.
+const SIDES: usize = 3;
+/// Points of the floor around the eye, as every so many of the horizontal directions, and the share of the way to the
+/// walls at which they lie.
+const FLOOR_STEP: usize = 4;
+const FLOOR_REACH: f32 = 0.25;
+/// Least share of them that are level with the eye's own floor, and what of the eye's height they may be off.
+const LEVEL: f32 = 0.75;
+const LEVEL_TOLERANCE: f32 = 0.25;
+
+/// A place to stand, and what can be seen from there.
+struct Place {
+    eye: Vec3,
+    view: Vec3,
+    /// How far it is free.
+    free: f32,
+    /// Mean of the logarithm of how far all of the picture is free.
+    openness: f64,
+}
 
 /// A camera inside, or `None` where nearly nothing is enclosed.
 ///
@@ -28,42 +49,87 @@ pub fn stand(probe: &mut Probe, bounds: Aabb) -> Option<Camera> {
     if bounds.is_empty() || bounds.size().min_element() <= 0.0 {
         return None;
     }
-    let looks = around(LOOKS);
-    let views = horizontal();
-    let mut best: Option<(f32, Vec3, Vec3)> = None;
+    let directions = Directions { looks: around(LOOKS), views: horizontal() };
+    let mut best: Option<Place> = None;
     for place in 0..PLACES * PLACES {
         let share = |i: usize| (i as f32 + 0.5) / PLACES as f32;
         let [x, z] = [share(place % PLACES), share(place / PLACES)];
         let mut last = None;
         for storey in STOREYS {
             let above = bounds.min + bounds.size() * Vec3::new(x, storey, z);
-            let Some(eye) = eye_above_floor(probe, above, bounds).filter(|eye| last.replace(*eye) != Some(*eye)) else {
-                continue;
-            };
-            let met = probe.look(eye, &looks, 0.0);
-            let facing = met.iter().zip(&looks).filter(|(met, look)| met.is_some_and(|met| met.normal.dot(**look) < 0.0));
-            if (facing.count() as f32) < ENCLOSED * LOOKS as f32 {
-                continue;
-            }
-            let (free, view) = longest(probe, eye, &views);
-            if best.is_none_or(|(longest, _, _)| free > longest) {
-                best = Some((free, eye, view));
+            let floor = eye_above_floor(probe, above, bounds).filter(|(eye, _)| last.replace(*eye) != Some(*eye));
+            let Some((eye, height)) = floor else { continue };
+            let place = directions.place(probe, eye, height);
+            if place.as_ref().is_some_and(|own| best.as_ref().is_none_or(|best| own.openness > best.openness)) {
+                best = place;
             }
         }
     }
-    let (free, eye, view) = best?;
+    let Place { eye, view, free, .. } = best?;
     let camera = Camera { eye, look_at: eye + view * free.max(eye.abs().max_element() * 1e-3), ..Camera::default() };
     camera.is_valid().then_some(camera)
 }
 
-/// The eye of somebody who stands on the floor below a point.
-fn eye_above_floor(probe: &mut Probe, above: Vec3, bounds: Aabb) -> Option<Vec3> {
+/// Where it is looked from a place.
+struct Directions {
+    /// All around.
+    looks: Vec<Vec3>,
+    /// Horizontally, in order.
+    views: Vec<Vec3>,
+}
+
+impl Directions {
+    /// What there is to see at `eye`, so high above the floor; `None` where that is not inside of a room.
+    fn place(&self, probe: &mut Probe, eye: Vec3, height: f32) -> Option<Place> {
+        let walls = probe.look(eye, &self.views, 0.0);
+        if !mostly_fronts(&walls, &self.views, WALLED) {
+            return None;
+        }
+        if !mostly_fronts(&probe.look(eye, &self.looks, 0.0), &self.looks, ENCLOSED) {
+            return None;
+        }
+        // What leads out of the scene is no view.
+        let free: Vec<f32> = walls.iter().map(|met| met.map_or(0.0, |met| met.distance)).collect();
+        self.is_floor_level(probe, eye, height, &free).then(|| self.widest(eye, &free))?
+    }
+
+    fn is_floor_level(&self, probe: &mut Probe, eye: Vec3, height: f32, free: &[f32]) -> bool {
+        let around = self.views.iter().zip(free).step_by(FLOOR_STEP);
+        let points: Vec<Vec3> = around.map(|(view, free)| eye + *view * (free * FLOOR_REACH)).collect();
+        let is_level = |point: &&Vec3| {
+            let below = probe.look_along(**point, Vec3::NEG_Y, 0.0);
+            below.is_some_and(|met| (met.distance - height).abs() <= LEVEL_TOLERANCE * height)
+        };
+        let level = points.iter().filter(is_level).count();
+        level as f32 >= LEVEL * points.len() as f32
+    }
+
+    /// The view that is free the farthest, over all of the picture: a gap between two pillars is none.
+    fn widest(&self, eye: Vec3, free: &[f32]) -> Option<Place> {
+        let openness = |middle: usize| {
+            let picture = (0..=2 * SIDES).map(|side| free[(middle + VIEWS + side - SIDES) % VIEWS]);
+            picture.map(|free| libm::log(f64::from(free.max(f32::MIN_POSITIVE)))).sum::<f64>() / (2 * SIDES + 1) as f64
+        };
+        let places = (0..VIEWS).map(|i| Place { eye, view: self.views[i], free: free[i], openness: openness(i) });
+        places.max_by(|a, b| a.openness.total_cmp(&b.openness))
+    }
+}
+
+/// Whether at least so great a share of looks met the front of something.
+fn mostly_fronts(met: &[Option<Met>], looks: &[Vec3], share: f32) -> bool {
+    let fronts = met.iter().zip(looks).filter(|(met, look)| met.is_some_and(|met| met.normal.dot(**look) < 0.0));
+    fronts.count() as f32 >= share * looks.len() as f32
+}
+
+/// The eye of somebody who stands on the floor below a point, and how high above it.
+fn eye_above_floor(probe: &mut Probe, above: Vec3, bounds: Aabb) -> Option<(Vec3, f32)> {
     let floor = probe.look_along(above, Vec3::NEG_Y, 0.0).filter(|met| met.normal.y > 0.5)?;
     let step = bounds.size().y * 1e-4;
     let ground = above - Vec3::Y * (floor.distance - step);
     let room = probe.look_along(ground, Vec3::Y, 0.0).map_or(bounds.max.y - ground.y, |met| met.distance);
     let [least, greatest] = EYE_SHARE.map(|share| share * room);
-    (room > step).then(|| ground + Vec3::Y * EYE_HEIGHT.clamp(least, greatest))
+    let height = EYE_HEIGHT.clamp(least, greatest);
+    (room > step).then_some((ground + Vec3::Y * height, height))
 }
 
 fn horizontal() -> Vec<Vec3> {
@@ -72,21 +138,6 @@ fn horizontal() -> Vec<Vec3> {
         Vec3::new(libm::cos(angle) as f32, 0.0, libm::sin(angle) as f32).normalize()
     };
     (0..VIEWS).map(direction).collect()
-}
-
-/// The view that is free the farthest, and how far. A gap that only one direction looks through does not count, nor one
-/// that leads out of the scene.
-fn longest(probe: &mut Probe, eye: Vec3, views: &[Vec3]) -> (f32, Vec3) {
-    let free: Vec<f32> = probe.look(eye, views, 0.0).iter().map(|met| met.map_or(0.0, |met| met.distance)).collect();
-    let mut best = (0.0, views[0]);
-    for (i, &view) in views.iter().enumerate() {
-        let sides = [(i + VIEWS - 1) % VIEWS, (i + 1) % VIEWS].map(|side| free[side]);
-        let own = free[i].min(sides[0].max(sides[1]));
-        if own > best.0 {
-            best = (own, view);
-        }
-    }
-    best
 }
 
 #[cfg(test)]

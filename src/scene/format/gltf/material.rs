@@ -35,9 +35,13 @@ pub fn materials(
         described.name = unique(material.name.as_deref(), i, &mut names);
         materials.push(described);
     }
-    let mut default = Reader { textures, report, pointer: "" }.material(&json::Material::default())?;
-    default.name = unique(Some(DEFAULT), materials.len(), &mut names);
-    materials.push(default);
+    materials.push(MaterialDesc {
+        name: unique(Some(DEFAULT), materials.len(), &mut names),
+        // The specification says metal, which shows no shape when it is rough and the only light is at the eye.
+        model: model(0.0, 1.0),
+        thin: true,
+        ..MaterialDesc::default_phong()
+    });
     Ok(materials)
 }
 
