@@ -17,7 +17,7 @@ const SHADOW_RAYS: usize = 1 << 16;
 /// Share of lit points that may be brighter than what [`HIGHLIGHT`] allows.
 const BRIGHTEST: f64 = 0.05;
 /// How many times brighter than usual the brightest points may be before they count as usual.
-const HIGHLIGHT: f64 = 6.0;
+const HIGHLIGHT: f64 = 3.0;
 /// Linear sRGB to luminance.
 const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 

@@ -18,6 +18,8 @@ const EYE_SHARE: [f32; 2] = [0.15, 0.55];
 const LOOKS: usize = 96;
 /// Least share of them that see the front of something, of a place inside.
 const ENCLOSED: f32 = 0.8;
+/// Least share of the places with a floor that must be inside: nooks between things are no room.
+const INSIDE: f32 = 0.4;
 /// Horizontal directions: of the walls, and tried for the view.
 const VIEWS: usize = 32;
 /// Least share of them that see the front of something: a table has no walls.
@@ -51,21 +53,26 @@ pub fn stand(probe: &mut Probe, bounds: Aabb) -> Option<Camera> {
     }
     let directions = Directions { looks: around(LOOKS), views: horizontal() };
     let mut best: Option<Place> = None;
+    let (mut with_floor, mut inside) = (0, 0);
     for place in 0..PLACES * PLACES {
         let share = |i: usize| (i as f32 + 0.5) / PLACES as f32;
         let [x, z] = [share(place % PLACES), share(place / PLACES)];
         let mut last = None;
+        let mut is_inside = false;
         for storey in STOREYS {
             let above = bounds.min + bounds.size() * Vec3::new(x, storey, z);
             let floor = eye_above_floor(probe, above, bounds).filter(|(eye, _)| last.replace(*eye) != Some(*eye));
             let Some((eye, height)) = floor else { continue };
             let place = directions.place(probe, eye, height);
+            is_inside |= place.is_some();
             if place.as_ref().is_some_and(|own| best.as_ref().is_none_or(|best| own.openness > best.openness)) {
                 best = place;
             }
         }
+        with_floor += u32::from(last.is_some());
+        inside += u32::from(is_inside);
     }
-    let Place { eye, view, free, .. } = best?;
+    let Place { eye, view, free, .. } = best.filter(|_| inside as f32 >= INSIDE * with_floor as f32)?;
     let camera = Camera { eye, look_at: eye + view * free.max(eye.abs().max_element() * 1e-3), ..Camera::default() };
     camera.is_valid().then_some(camera)
 }

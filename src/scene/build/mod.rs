@@ -36,10 +36,9 @@ use std::f64::consts::PI;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Ambient light of a scene that has no lights.
-const HEADLIGHT_AMBIENT: Vec3 = Vec3::splat(0.1);
-/// Ambient light of a scene that is exposed automatically, as a share of what its lights usually give.
-const AMBIENT_SHARE: f64 = 0.1;
+/// Ambient light of a scene that has no lights: a share of the headlight's. Also that of a scene that is exposed
+/// automatically, as a share of what its lights usually give.
+const AMBIENT_SHARE: f32 = 0.1;
 /// How bright white is by automatic exposure in usual light, before the tone curve.
 const WHITE: f64 = 0.5;
 /// Greatest exposure in either direction, as the setting allows it.
@@ -170,7 +169,7 @@ impl SceneBuilder {
         static GENERATION: AtomicU64 = AtomicU64::new(0);
         let headlight = self.lights.is_empty();
         if headlight {
-            self.render.ambient = HEADLIGHT_AMBIENT;
+            self.render.ambient = Vec3::splat(AMBIENT_SHARE);
         }
         if self.materials.is_empty() {
             self.materials.push(Material::default_phong());
@@ -213,7 +212,7 @@ impl SceneBuilder {
         let stops = libm::log2(WHITE / white).clamp(-MOST_STOPS, MOST_STOPS);
         if self.render.exposure == Exposure::Auto {
             if !self.lights.is_empty() {
-                self.render.ambient = Vec3::splat((AMBIENT_SHARE * white) as f32);
+                self.render.ambient = Vec3::splat(AMBIENT_SHARE * irradiance as f32);
             }
             let full = libm::exp2(-stops) as f32;
             for material in &mut self.materials {

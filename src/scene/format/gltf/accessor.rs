@@ -15,6 +15,7 @@ const MOST_ZEROS: u64 = 1 << 22;
 
 /// An accessor whose elements are known to be there.
 pub struct Accessor<'d> {
+    document: &'d Document<'d>,
     number: usize,
     count: usize,
     kind: Type,
@@ -23,6 +24,15 @@ pub struct Accessor<'d> {
     /// Where the elements lie; without any, all are 0.
     dense: Option<Strided<'d>>,
     sparse: Option<Sparse<'d>>,
+}
+
+/// Which elements are wanted.
+#[derive(Clone, Copy)]
+pub enum Which<'a> {
+    /// All, in their order.
+    All,
+    /// These, all of which there are.
+    These(&'a [u32]),
 }
 
 /// Elements at equal distances.
@@ -61,7 +71,6 @@ impl<'d> Accessor<'d> {
             let message = format!("{count} elements without a bufferView; expected at most {MOST_ZEROS}");
             return Err(Fault::new(format!("/accessors/{i}/count"), message));
         }
-        document.take_elements(count, format_args!("/accessors/{i}/count"))?;
         let size = (component.size() * kind.multiplicity()) as u64;
         let dense = match accessor.buffer_view {
             None => None,
@@ -76,7 +85,7 @@ impl<'d> Accessor<'d> {
             Some(sparse) => Some(Sparse::open(document, sparse, i, size)?),
         };
         let normalized = accessor.normalized;
-        Ok(Self { number: i, count: to_usize(count), kind, component, normalized, dense, sparse })
+        Ok(Self { document, number: i, count: to_usize(count), kind, component, normalized, dense, sparse })
     }
 
     /// How many elements there are.
@@ -85,46 +94,39 @@ impl<'d> Accessor<'d> {
     }
 
     /// Vectors of `N` numbers. Whole numbers are taken as shares of their greatest where the accessor says so.
-    pub fn vectors<const N: usize>(&self) -> Read<Vec<[f32; N]>> {
-        self.expect(self.kind.multiplicity() == N, "type", &format!("expected {N} numbers an element"))?;
-        self.decode(self.normalized)
+    pub fn vectors<const N: usize>(&self, which: Which) -> Read<Vec<[f32; N]>> {
+        self.decode(which, self.normalized)
     }
 
     /// Vectors of `N` shares from 0 to 1, whether whole numbers or not.
-    pub fn shares<const N: usize>(&self) -> Read<Vec<[f32; N]>> {
-        self.expect(self.kind.multiplicity() == N, "type", &format!("expected {N} numbers an element"))?;
-        self.decode(true)
+    pub fn shares<const N: usize>(&self, which: Which) -> Read<Vec<[f32; N]>> {
+        self.decode(which, true)
     }
 
     /// Colours with opacity, which is 1 where the file gives three numbers.
-    pub fn colors(&self) -> Read<Vec<[f32; 4]>> {
+    pub fn colors(&self, which: Which) -> Read<Vec<[f32; 4]>> {
         match self.kind {
             Type::Vec3 => {
-                let colors = self.shares::<3>()?;
+                let colors = self.shares::<3>(which)?;
                 Ok(colors.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect())
             }
-            _ => self.shares(),
+            _ => self.shares(which),
         }
     }
 
     /// Whole numbers, `N` an element.
-    pub fn integers<const N: usize>(&self) -> Read<Vec<[u32; N]>> {
-        self.expect(self.kind.multiplicity() == N, "type", &format!("expected {N} numbers an element"))?;
+    pub fn integers<const N: usize>(&self, which: Which) -> Read<Vec<[u32; N]>> {
         let unsigned = matches!(self.component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
         self.expect(unsigned, "componentType", "expected an unsigned type: 5121, 5123 or 5125")?;
-        let mut elements = vec![[0; N]; self.count];
-        let read = |strided: &Strided, elements: &mut [[u32; N]]| match self.component {
+        self.read(which, |strided, elements| match self.component {
             ComponentType::U8 => strided.copy(elements, |[b]| u32::from(b)),
             ComponentType::U16 => strided.copy(elements, |b| u32::from(u16::from_le_bytes(b))),
             _ => strided.copy(elements, u32::from_le_bytes),
-        };
-        self.fill(&mut elements, read)?;
-        Ok(elements)
+        })
     }
 
-    fn decode<const N: usize>(&self, normalized: bool) -> Read<Vec<[f32; N]>> {
-        let mut elements = vec![[0.0; N]; self.count];
-        let read = |strided: &Strided, elements: &mut [[f32; N]]| match (self.component, normalized) {
+    fn decode<const N: usize>(&self, which: Which, normalized: bool) -> Read<Vec<[f32; N]>> {
+        let elements = self.read(which, |strided, elements: &mut [[f32; N]]| match (self.component, normalized) {
             (ComponentType::F32, _) => strided.copy(elements, f32::from_le_bytes),
             (ComponentType::U8, true) => strided.copy(elements, |[b]| f32::from(b) / 255.0),
             (ComponentType::U8, false) => strided.copy(elements, |[b]| f32::from(b)),
@@ -137,8 +139,7 @@ impl<'d> Accessor<'d> {
             }
             (ComponentType::I16, false) => strided.copy(elements, |b| f32::from(i16::from_le_bytes(b))),
             (ComponentType::U32, _) => strided.copy(elements, |b| u32::from_le_bytes(b) as f32),
-        };
-        self.fill(&mut elements, read)?;
+        })?;
         match elements.iter().position(|element| !element.iter().all(|v| v.is_finite())) {
             None => Ok(elements),
             Some(at) => {
@@ -148,32 +149,47 @@ impl<'d> Accessor<'d> {
         }
     }
 
-    /// Fills in the dense elements, and the sparse ones over them.
-    fn fill<T: Copy + Default, const N: usize>(
+    /// The elements asked for: the dense ones, and the sparse ones over them.
+    fn read<T: Copy + Default, const N: usize>(
         &self,
-        elements: &mut [[T; N]],
-        read: impl Fn(&Strided, &mut [[T; N]]),
-    ) -> Read<()> {
+        which: Which,
+        copy: impl Fn(&Strided, &mut [[T; N]]),
+    ) -> Read<Vec<[T; N]>> {
+        self.expect(self.kind.multiplicity() == N, "type", &format!("expected {N} numbers an element"))?;
+        let pointer = format_args!("/accessors/{}/count", self.number);
+        if let Which::These(places) = which
+            && let Some(place) = places.iter().find(|place| **place as usize >= self.count)
+        {
+            return Err(Fault::new(pointer.to_string(), format!("count is {}; a vertex has number {place}", self.count)));
+        }
+        if let (Which::These(places), Some(dense), None) = (which, &self.dense, &self.sparse) {
+            self.document.take_elements(places.len() as u64, pointer)?;
+            let mut elements = vec![[T::default(); N]; places.len()];
+            for (element, &place) in elements.iter_mut().zip(places) {
+                copy(&dense.from(place), std::slice::from_mut(element));
+            }
+            return Ok(elements);
+        }
+        self.document.take_elements(self.count as u64, pointer)?;
+        let mut elements = vec![[T::default(); N]; self.count];
         if let Some(dense) = &self.dense {
-            read(dense, elements);
+            copy(dense, &mut elements);
         }
-        let Some(sparse) = &self.sparse else { return Ok(()) };
-        let mut values = vec![[T::default(); N]; sparse.count];
-        read(&sparse.values, &mut values);
-        let mut places = vec![[0_u32]; sparse.count];
-        match sparse.index_type {
-            ComponentType::U8 => sparse.indices.copy(&mut places, |[b]| u32::from(b)),
-            ComponentType::U16 => sparse.indices.copy(&mut places, |b| u32::from(u16::from_le_bytes(b))),
-            _ => sparse.indices.copy(&mut places, u32::from_le_bytes),
+        if let Some(sparse) = &self.sparse {
+            let mut values = vec![[T::default(); N]; sparse.count];
+            copy(&sparse.values, &mut values);
+            for (place, value) in sparse.places().into_iter().zip(values) {
+                let Some(element) = elements.get_mut(place as usize) else {
+                    let message = format!("index {place} names none of the {} elements", self.count);
+                    return Err(Fault::new(format!("/accessors/{}/sparse/indices", self.number), message));
+                };
+                *element = value;
+            }
         }
-        for ([place], value) in places.into_iter().zip(values) {
-            let Some(element) = elements.get_mut(place as usize) else {
-                let message = format!("index {place} names none of the {} elements", self.count);
-                return Err(Fault::new(format!("/accessors/{}/sparse/indices", self.number), message));
-            };
-            *element = value;
-        }
-        Ok(())
+        Ok(match which {
+            Which::All => elements,
+            Which::These(places) => places.iter().map(|place| elements[*place as usize]).collect(),
+        })
     }
 
     fn expect(&self, holds: bool, key: &str, message: &str) -> Read<()> {
@@ -214,6 +230,12 @@ impl<'d> Strided<'d> {
         Ok(Self { bytes, stride: to_usize(stride) })
     }
 
+    /// Those from element `place` on; none beyond the last.
+    fn from(&self, place: u32) -> Self {
+        let start = (place as usize).saturating_mul(self.stride);
+        Self { bytes: self.bytes.get(start..).unwrap_or_default(), stride: self.stride }
+    }
+
     /// Copies the first elements there are, number by number.
     fn copy<T, const N: usize, const SIZE: usize>(&self, elements: &mut [[T; N]], convert: impl Fn([u8; SIZE]) -> T) {
         for (element, bytes) in elements.iter_mut().zip(self.bytes.chunks(self.stride)) {
@@ -225,6 +247,17 @@ impl<'d> Strided<'d> {
 }
 
 impl<'d> Sparse<'d> {
+    /// Which elements are replaced.
+    fn places(&self) -> Vec<u32> {
+        let mut places = vec![[0_u32]; self.count];
+        match self.index_type {
+            ComponentType::U8 => self.indices.copy(&mut places, |[b]| u32::from(b)),
+            ComponentType::U16 => self.indices.copy(&mut places, |b| u32::from(u16::from_le_bytes(b))),
+            _ => self.indices.copy(&mut places, u32::from_le_bytes),
+        }
+        places.into_iter().map(|[place]| place).collect()
+    }
+
     fn open(document: &'d Document, sparse: &sparse::Sparse, accessor: usize, size: u64) -> Read<Self> {
         let sparse::Sparse { count, indices, values, .. } = sparse;
         let at = |key: &str| format!("/accessors/{accessor}/sparse/{key}");

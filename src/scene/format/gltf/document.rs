@@ -58,6 +58,11 @@ impl<'a> Document<'a> {
         Ok((bytes, view.byte_stride.map(|stride| stride.0 as u64)))
     }
 
+    /// How many bytes the buffers have.
+    pub fn buffer_bytes(&self) -> usize {
+        self.buffers.iter().flatten().map(|buffer| buffer.len()).sum()
+    }
+
     /// Takes `count` vertices or indices from what a file may ask for.
     pub fn take_elements(&self, count: u64, pointer: fmt::Arguments) -> Read<()> {
         let left = |left: u64| left.checked_sub(count);

@@ -1,9 +1,10 @@
 //! `EXT_mesh_gpu_instancing`: one node that draws its mesh many times.
 
-use super::accessor::Accessor;
+use super::accessor::{Accessor, Which};
 use super::document::Document;
 use super::fault::{Fault, Read};
 use super::nodes::{trs, unit};
+use crate::scene::limits::exceeded;
 use glam::{DAffine3, DQuat, DVec3};
 use gltf::json::{self, Index, Node};
 use serde_json::Value;
@@ -11,8 +12,9 @@ use serde_json::Value;
 /// The name of the extension.
 pub const EXTENSION: &str = "EXT_mesh_gpu_instancing";
 
-/// From each instance's space to that of the node, which are the same where it draws its mesh once.
-pub fn instances(document: &Document, node: &Node, i: usize) -> Read<Vec<DAffine3>> {
+/// From each instance's space to that of the node, which are the same where it draws its mesh once. `limit` is what the
+/// file may ask for.
+pub fn instances(document: &Document, node: &Node, i: usize, limit: u64) -> Read<Vec<DAffine3>> {
     let Some(extension) = node.extensions.as_ref().and_then(|extensions| extensions.others.get(EXTENSION)) else {
         return Ok(vec![DAffine3::IDENTITY]);
     };
@@ -20,13 +22,16 @@ pub fn instances(document: &Document, node: &Node, i: usize) -> Read<Vec<DAffine
     let [translation, rotation, scale] = [open("TRANSLATION")?, open("ROTATION")?, open("SCALE")?];
     let counts = [&translation, &rotation, &scale].map(|accessor| accessor.as_ref().map(Accessor::count));
     let count = counts.iter().flatten().copied().next().unwrap_or(1);
+    if count as u64 > limit {
+        return Err(Fault::new(format!("/nodes/{i}"), format!("instances: {}", exceeded("nodes", limit))));
+    }
     if counts.iter().flatten().any(|other| *other != count) {
         let pointer = format!("/nodes/{i}/extensions/{EXTENSION}/attributes");
         return Err(Fault::new(pointer, "the attributes have different counts; expected one entry an instance"));
     }
-    let translations = translation.map(|accessor| accessor.vectors::<3>()).transpose()?;
-    let rotations = rotation.map(|accessor| accessor.vectors::<4>()).transpose()?;
-    let scales = scale.map(|accessor| accessor.vectors::<3>()).transpose()?;
+    let translations = translation.map(|accessor| accessor.vectors::<3>(Which::All)).transpose()?;
+    let rotations = rotation.map(|accessor| accessor.vectors::<4>(Which::All)).transpose()?;
+    let scales = scale.map(|accessor| accessor.vectors::<3>(Which::All)).transpose()?;
     let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
     let instance = |place: usize| {
         trs(

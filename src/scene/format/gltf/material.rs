@@ -13,6 +13,7 @@ use gltf::json::material::AlphaMode;
 use gltf::json::validation::Checked;
 use serde_json::{Map, Value};
 use std::collections::HashSet;
+use std::f32::consts::FRAC_1_PI;
 
 /// The material of primitives that name none.
 const DEFAULT: &str = "default";
@@ -168,9 +169,9 @@ impl Reader<'_, '_> {
     }
 }
 
-/// All of the scene's ambient light counts: the scene gives it in proportion to its lights.
+/// Ambient light, like that of lights, goes off in all directions.
 fn model(metallic: f32, roughness: f32) -> Model {
-    Model::MetallicRoughness { ambient: Vec3::ONE, metallic, roughness }
+    Model::MetallicRoughness { ambient: Vec3::splat(FRAC_1_PI), metallic, roughness }
 }
 
 /// Beer's law, from the colour that white light has after a distance.

@@ -1,6 +1,6 @@
 //! Primitives of meshes: attributes and indices to triangles over shared vertices.
 
-use super::accessor::Accessor;
+use super::accessor::{Accessor, Which};
 use super::document::Document;
 use super::fault::{Fault, Read};
 use super::{skin, tangents, topology};
@@ -62,30 +62,32 @@ impl Job<'_> {
             notes.push("the number of corners is no multiple of 3; those left over are not drawn".to_owned());
         }
         drop(indices);
+        let (triangles, used) = only_used(triangles, count);
+        let which = used.as_deref().map_or(Which::All, Which::These);
 
-        let mut positions: Vec<[f32; 3]> = positions.vectors()?;
-        self.morph(document, &mut positions, |target| target.positions)?;
+        let mut positions: Vec<[f32; 3]> = positions.vectors(which)?;
+        self.morph(document, which, &mut positions, |target| target.positions)?;
         let mut mesh = MeshDesc { triangles, vertices: positions.iter().map(vector).collect(), ..MeshDesc::default() };
         if let Some(normals) = self.vertex_attribute(document, Semantic::Normals, count)? {
-            let mut normals: Vec<[f32; 3]> = normals.vectors()?;
-            self.morph(document, &mut normals, |target| target.normals)?;
+            let mut normals: Vec<[f32; 3]> = normals.vectors(which)?;
+            self.morph(document, which, &mut normals, |target| target.normals)?;
             mesh.normals = normals.iter().map(vector).collect();
         }
         if let Some(uvs) = self.vertex_attribute(document, Semantic::TexCoords(0), count)? {
             let upwards = |[u, v]: &[f32; 2]| DVec2::new((*u).into(), 1.0 - f64::from(*v));
-            mesh.uvs = uvs.vectors()?.iter().map(upwards).collect();
+            mesh.uvs = uvs.vectors(which)?.iter().map(upwards).collect();
         }
         if self.second_coordinates
             && let Some(uvs) = self.vertex_attribute(document, Semantic::TexCoords(1), count)?
         {
-            mesh.uvs1 = uvs.vectors()?.iter().map(|[u, v]| Vec2::new(*u, 1.0 - v)).collect();
+            mesh.uvs1 = uvs.vectors(which)?.iter().map(|[u, v]| Vec2::new(*u, 1.0 - v)).collect();
         }
         if let Some(colors) = self.vertex_attribute(document, Semantic::Colors(0), count)? {
-            mesh.colors = colors.colors()?.into_iter().map(Vec4::from_array).collect();
+            mesh.colors = colors.colors(which)?.into_iter().map(Vec4::from_array).collect();
         }
         if let Some(set) = self.normal_map {
             match self.vertex_attribute(document, Semantic::Tangents, count)?.filter(|_| !mesh.normals.is_empty()) {
-                Some(tangents) => mesh.tangents = tangents.vectors()?.into_iter().map(Vec4::from_array).collect(),
+                Some(tangents) => mesh.tangents = tangents.vectors(which)?.into_iter().map(Vec4::from_array).collect(),
                 None if !tangents::generate(&mut mesh, set) => {
                     notes.push("the normal map has no texture coordinates to follow; it is not shown".to_owned());
                 }
@@ -93,7 +95,7 @@ impl Job<'_> {
             }
         }
         if let Some(joints) = &self.joints {
-            skin::hold(document, self.primitive, &self.pointer, joints, &mut mesh)?;
+            skin::hold(document, self.primitive, &self.pointer, which, joints, &mut mesh)?;
         }
         notes.extend(replace_odd_normals(&mut mesh));
         Ok(Ok(Drawn { mesh, notes }))
@@ -138,7 +140,7 @@ impl Job<'_> {
     fn indices(&self, document: &Document, vertices: u32) -> Read<Option<Vec<[u32; 1]>>> {
         let Some(index) = self.primitive.indices else { return Ok(None) };
         let pointer = format!("{}/indices", self.pointer);
-        let indices = Accessor::open(document, index, format_args!("{pointer}"))?.integers::<1>()?;
+        let indices = Accessor::open(document, index, format_args!("{pointer}"))?.integers::<1>(Which::All)?;
         match indices.iter().position(|[i]| *i >= vertices) {
             None => Ok(Some(indices)),
             Some(at) => {
@@ -152,6 +154,7 @@ impl Job<'_> {
     fn morph(
         &self,
         document: &Document,
+        which: Which,
         vectors: &mut [[f32; 3]],
         accessor: impl Fn(&MorphTarget) -> Option<Index<json::Accessor>>,
     ) -> Read<()> {
@@ -159,7 +162,7 @@ impl Job<'_> {
         for (place, (target, &weight)) in targets.enumerate() {
             let Some(index) = accessor(target).filter(|_| weight != 0.0) else { continue };
             let pointer = format_args!("{}/targets/{place}", self.pointer);
-            let moves = Accessor::open(document, index, pointer)?.vectors::<3>()?;
+            let moves = Accessor::open(document, index, pointer)?.vectors::<3>(which)?;
             for (vector, by) in vectors.iter_mut().zip(&moves) {
                 for (value, by) in vector.iter_mut().zip(by) {
                     *value += weight * by;
@@ -171,6 +174,21 @@ impl Job<'_> {
             false => Err(Fault::new(format!("{}/targets", self.pointer), "morphed, the mesh is not finite")),
         }
     }
+}
+
+/// Triangles over no more vertices than they use, and which those are, where they use few of `count`: some writers have one
+/// long list for many primitives.
+fn only_used(mut triangles: Vec<[u32; 3]>, count: usize) -> (Vec<[u32; 3]>, Option<Vec<u32>>) {
+    if triangles.len() * 6 >= count {
+        return (triangles, None);
+    }
+    let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    for vertex in triangles.iter_mut().flatten() {
+        *vertex = used.partition_point(|other| other < vertex) as u32;
+    }
+    (triangles, Some(used))
 }
 
 fn vector(v: &[f32; 3]) -> DVec3 {

@@ -129,6 +129,7 @@ fn objects(
     let mut job_of: HashMap<Key, usize> = HashMap::new();
     // Node, where its instances stand, and its primitives as jobs.
     let mut drawn: Vec<(usize, Vec<DAffine3>, Vec<usize>)> = Vec::new();
+    let mut instances_left = limits.nodes;
     for &node in &nodes.order {
         let (own, Some(world)) = (&document.root.nodes[node], &nodes.worlds[node]) else { continue };
         let Some(index) = own.mesh else { continue };
@@ -158,7 +159,11 @@ fn objects(
         // The joints of a skin place it, not its node.
         let places = match skinned {
             true => vec![DAffine3::IDENTITY],
-            false => instancing::instances(document, own, node)?.into_iter().map(|place| *world * place).collect(),
+            false => {
+                let instances = instancing::instances(document, own, node, instances_left)?;
+                instances_left -= instances.len() as u64;
+                instances.into_iter().map(|place| *world * place).collect()
+            }
         };
         drawn.push((node, places, own_jobs));
     }

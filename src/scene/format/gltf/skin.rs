@@ -1,6 +1,6 @@
 //! Skins: the mesh as its joints hold it at rest.
 
-use super::accessor::Accessor;
+use super::accessor::{Accessor, Which};
 use super::document::{Document, get};
 use super::fault::Read;
 use super::nodes::Nodes;
@@ -18,7 +18,7 @@ pub fn joint_matrices(document: &Document, nodes: &Nodes, skin: Index<Skin>, nod
     let mut binds = Vec::new();
     if let Some(index) = skin.inverse_bind_matrices {
         let accessor = Accessor::open(document, index, format_args!("/skins/{i}/inverseBindMatrices"))?;
-        binds = accessor.vectors::<16>()?;
+        binds = accessor.vectors::<16>(Which::All)?;
     }
     let joint = |(place, &joint): (usize, &Index<Node>)| {
         get(&document.root.nodes, joint, "node", format_args!("/skins/{i}/joints/{place}"))?;
@@ -35,11 +35,13 @@ pub fn joint_matrices(document: &Document, nodes: &Nodes, skin: Index<Skin>, nod
     skin.joints.iter().enumerate().map(joint).collect()
 }
 
-/// Moves a mesh to where joints hold it. What no joint holds is left where it is.
+/// Moves a mesh to where joints hold it. `which` of the primitive's vertices the mesh has. What no joint holds is left where
+/// it is.
 pub fn hold(
     document: &Document,
     primitive: &Primitive,
     pointer: &str,
+    which: Which,
     joints: &[DAffine3],
     mesh: &mut MeshDesc,
 ) -> Read<()> {
@@ -54,8 +56,8 @@ pub fn hold(
         let open = |index, name: &str| {
             Accessor::open(document, index, format_args!("{pointer}/attributes/{name}_{set}"))
         };
-        let held_by = open(held_by, "JOINTS")?.integers::<4>()?;
-        let weights = open(weights, "WEIGHTS")?.shares::<4>()?;
+        let held_by = open(held_by, "JOINTS")?.integers::<4>(which)?;
+        let weights = open(weights, "WEIGHTS")?.shares::<4>(which)?;
         for (((held_by, weights), sum), total) in held_by.iter().zip(&weights).zip(&mut sums).zip(&mut totals) {
             for (&joint, &weight) in held_by.iter().zip(weights) {
                 let weight = f64::from(weight);

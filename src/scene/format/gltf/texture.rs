@@ -1,7 +1,7 @@
 //! Textures, their images and samplers, and how materials look them up.
 
 use super::document::{Document, get};
-use super::fault::{Read, Report};
+use super::fault::{Fault, Read, Report};
 use super::uri::{self, Target};
 use crate::scene::desc::{ImageDesc, ImageSource, NameRef, TextureDesc, TextureKind};
 use crate::scene::material::Lookup;
@@ -12,6 +12,7 @@ use gltf::json::texture::{MagFilter, MinFilter, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Textures that name an image of a kind that is not decoded, in the order of preference for one that is.
 const OTHER_SOURCES: [&str; 2] = ["EXT_texture_webp", "MSFT_texture_dds"];
@@ -25,6 +26,9 @@ pub struct Textures<'d> {
     names: HashMap<usize, Option<NameRef>>,
     /// The images, as textures share them.
     images: HashMap<usize, Option<ImageSource>>,
+    /// Bytes of images within buffers, by buffer view, and how many more there may be: no more than the buffers have.
+    embedded: HashMap<usize, Arc<[u8]>>,
+    bytes_left: usize,
 }
 
 /// How a material refers to a texture, whatever the property.
@@ -49,7 +53,14 @@ impl<'a> Reference<'a> {
 impl<'d> Textures<'d> {
     /// None yet.
     pub fn new(document: &'d Document<'d>) -> Self {
-        Self { document, descs: Vec::new(), names: HashMap::new(), images: HashMap::new() }
+        Self {
+            document,
+            descs: Vec::new(),
+            names: HashMap::new(),
+            images: HashMap::new(),
+            embedded: HashMap::new(),
+            bytes_left: document.buffer_bytes(),
+        }
     }
 
     /// How a texture is looked up; `None` where there is nothing to show, which was told. `pointer` is where the material
@@ -116,19 +127,19 @@ impl<'d> Textures<'d> {
         Ok(source)
     }
 
-    fn image(&self, image: &json::Image, i: usize, report: &mut Report) -> Read<Option<ImageSource>> {
+    fn image(&mut self, image: &json::Image, i: usize, report: &mut Report) -> Read<Option<ImageSource>> {
         let pointer = format!("/images/{i}");
         let is_ktx = |name: &str| name.to_ascii_lowercase().ends_with("ktx2");
         if image.mime_type.as_ref().is_some_and(|kind| is_ktx(&kind.0)) || image.uri.as_deref().is_some_and(is_ktx) {
             report.warn(pointer, "an image of type KTX2, which is not decoded; it is not shown");
             return Ok(None);
         }
-        let embedded = |bytes: &[u8], report: &mut Report| {
+        let embedded = |bytes: Arc<[u8]>, report: &mut Report| {
             let name = image.name.clone().unwrap_or_else(|| format!("image {i}"));
-            ImageSource::Embedded { bytes: bytes.into(), name: NameRef { name, at: report.at(&*pointer) } }
+            ImageSource::Embedded { bytes, name: NameRef { name, at: report.at(&*pointer) } }
         };
         if let Some(view) = image.buffer_view {
-            let (bytes, _) = self.document.view(view, format_args!("/images/{i}/bufferView"))?;
+            let bytes = self.bytes_of(view, i)?;
             return Ok(Some(embedded(bytes, report)));
         }
         let Some(uri) = &image.uri else {
@@ -136,7 +147,7 @@ impl<'d> Textures<'d> {
             return Ok(None);
         };
         Ok(match uri::read(uri) {
-            Ok(Target::Bytes(bytes)) => Some(embedded(&bytes, report)),
+            Ok(Target::Bytes(bytes)) => Some(embedded(bytes.into(), report)),
             Ok(Target::File(name)) => {
                 Some(ImageSource::File(NameRef { name: name.into_owned(), at: report.at(pointer) }))
             }
@@ -145,6 +156,22 @@ impl<'d> Textures<'d> {
                 None
             }
         })
+    }
+}
+
+impl Textures<'_> {
+    /// The bytes of image `i` in a buffer view.
+    fn bytes_of(&mut self, view: Index<json::buffer::View>, i: usize) -> Read<Arc<[u8]>> {
+        if let Some(bytes) = self.embedded.get(&view.value()) {
+            return Ok(Arc::clone(bytes));
+        }
+        let (bytes, _) = self.document.view(view, format_args!("/images/{i}/bufferView"))?;
+        self.bytes_left = self.bytes_left.checked_sub(bytes.len()).ok_or_else(|| {
+            Fault::new(format!("/images/{i}/bufferView"), "the images overlap: together they are larger than all buffers")
+        })?;
+        let bytes: Arc<[u8]> = bytes.into();
+        self.embedded.insert(view.value(), Arc::clone(&bytes));
+        Ok(bytes)
     }
 }
 
