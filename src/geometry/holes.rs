@@ -103,31 +103,53 @@ fn neighbours(t: f32, size: u32, wrap: Wrap, blended: bool) -> (u32, u32, f32) {
 
 impl Geometry {
     /// Of the lanes in `hit`, those that meet the surface of cut-out triangles and no hole. Lane i is a ray's hit on the
-    /// primitive at `place(i)` of block `block`, whose fields are given.
-    #[inline(always)]
+    /// primitive at `places[i]` of block `block`, whose fields are given. Not inlined: there are few holes, and the
+    /// searches around it would hold it again and again.
     pub(super) fn meets_no_hole<S: Simd, F: Lanes<S>>(
         &self,
+        simd: S,
         fields: &[F],
         rays: &Rays<F>,
         hit: F::Mask,
-        block: usize,
-        place: impl Fn(usize) -> usize,
+        block: u32,
+        places: Places,
     ) -> F::Mask {
-        let mut left = hit.to_bitmask();
-        let Some(fields) = fields.first_chunk::<10>().filter(|_| left != 0) else { return hit };
-        let weights = Triangle::barycentric(fields, rays);
-        let mut whole = left;
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize;
-            left &= left - 1;
-            let holes = &self.holes[block * BLOCK + place(lane)];
-            let weights = [weights[0][lane], weights[1][lane], weights[2][lane]];
-            if !holes.is_whole(&self.hole_maps[holes.map as usize], weights) {
-                whole &= !(1 << lane);
-            }
-        }
-        F::Mask::from_bitmask(fields[0].token(), whole)
+        let Some(fields) = fields.first_chunk::<10>() else { return hit };
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut left = hit.to_bitmask();
+                if left == 0 {
+                    return hit;
+                }
+                let weights = Triangle::barycentric(fields, rays);
+                let mut whole = left;
+                while left != 0 {
+                    let lane = left.trailing_zeros() as usize;
+                    left &= left - 1;
+                    let place = match places {
+                        Places::Same(place) => place,
+                        Places::OwnLane => lane,
+                    };
+                    let holes = &self.holes[block as usize * BLOCK + place];
+                    let weights = [weights[0][lane], weights[1][lane], weights[2][lane]];
+                    if !holes.is_whole(&self.hole_maps[holes.map as usize], weights) {
+                        whole &= !(1 << lane);
+                    }
+                }
+                F::Mask::from_bitmask(simd, whole)
+            },
+        )
     }
+}
+
+/// Where in its block the primitive of each lane lies.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Places {
+    /// All lanes are rays towards one.
+    Same(usize),
+    /// The lanes are one ray towards all of them.
+    OwnLane,
 }
 
 #[cfg(test)]

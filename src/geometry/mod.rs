@@ -287,6 +287,20 @@ impl Geometry {
         }
     }
 
+    /// The corners of a triangle, in the kernel's order; 0 for other shapes.
+    #[inline]
+    pub fn corners_of(&self, primitive: PrimitiveIndex) -> [f32; 9] {
+        let slot = self.slots[primitive as usize];
+        let mut corners = [0.0; 9];
+        if slot.kind.is_triangle() {
+            let block = &self.triangles_of(slot.kind)[slot.block as usize];
+            for (corner, field) in corners.iter_mut().zip(&block.fields) {
+                *corner = field[usize::from(slot.place)];
+            }
+        }
+        corners
+    }
+
     /// Blocks of a type of triangles.
     #[inline(always)]
     pub fn triangles_of(&self, kind: PrimitiveKind) -> &[Block<10>] {

@@ -4,6 +4,7 @@
 //! with the same kernels, so the same hits.
 
 use super::bvh::{Bvh, Child, Leaf, Node};
+use super::holes::Places;
 use super::primitive::{Cone, Cutout, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use super::traverse::{Pending, STACK};
 use super::{BLOCK, Block, Packet, PrimitiveKind, Rays, Search, SphereTerms, Visitor};
@@ -129,7 +130,7 @@ macro_rules! test {
         let fields = $search.geometry.$blocks[$block].load($simd);
         let (mut mask, t) = $kernel::intersect(&fields, &$ray.rays, $t_min);
         if $kernel::HAS_HOLES {
-            mask = $search.geometry.meets_no_hole(&fields, &$ray.rays, mask, $block, |place| place);
+            mask = $search.geometry.meets_no_hole($simd, &fields, &$ray.rays, mask, $block as u32, Places::OwnLane);
         }
         (mask, t)
     }};

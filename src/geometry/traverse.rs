@@ -183,7 +183,8 @@ macro_rules! test_place {
         let fields = $search.geometry.$blocks[$block].splat($simd, $place);
         let (mut mask, t) = $kernel::intersect(&fields, $rays, $t_min);
         if $kernel::HAS_HOLES {
-            mask = $search.geometry.meets_no_hole(&fields, $rays, mask, $block, |_| $place);
+            let places = crate::geometry::holes::Places::Same($place);
+            mask = $search.geometry.meets_no_hole($simd, &fields, $rays, mask, $block as u32, places);
         }
         (mask, t)
     }};

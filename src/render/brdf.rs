@@ -37,11 +37,14 @@ struct Highlight<S: Simd> {
 
 /// Lambert under a Trowbridge-Reitz highlight with the height-correlated Smith term and Schlick's Fresnel.
 struct MetallicRoughness<S: Simd> {
-    color: V3<S::f32s>,
-    opacity: V3<S::f32s>,
-    metallic: S::f32s,
-    /// Negative in lanes that are not of this model.
-    roughness: S::f32s,
+    /// Lanes of this model.
+    own: Mask<S>,
+    /// Squared width of the highlight: roughness to the power of four.
+    alpha2: S::f32s,
+    /// Reflectance straight ahead.
+    f0: V3<S::f32s>,
+    /// What is scattered of the light that is not reflected.
+    diffuse: V3<S::f32s>,
 }
 
 impl<S: Simd> Reflectance<S> {
@@ -72,8 +75,7 @@ impl<S: Simd> Reflectance<S> {
         }
         let mut metallic_roughness = None;
         if some_metallic {
-            let Skin { metallic, roughness, .. } = *skin;
-            metallic_roughness = Some(MetallicRoughness { color, opacity, metallic, roughness });
+            metallic_roughness = Some(MetallicRoughness::new(simd, skin, opacity));
         }
         Self { phong, metallic_roughness }
     }
@@ -95,8 +97,7 @@ impl<S: Simd> Reflectance<S> {
             None => V3::all(S::f32s::splat(simd, 0.0)),
         };
         if let Some(model) = &self.metallic_roughness {
-            let own = model.roughness.simd_ge(S::f32s::splat(simd, 0.0));
-            reflected = V3::select(own, model.towards(simd, normal, to_viewer, to_light, n_dot_l), reflected);
+            reflected = V3::select(model.own, model.towards(simd, normal, to_viewer, to_light, n_dot_l), reflected);
         }
         reflected
     }
@@ -127,6 +128,22 @@ impl<S: Simd> Phong<S> {
 }
 
 impl<S: Simd> MetallicRoughness<S> {
+    /// All that does not depend on the light. Left to the loop over lights, it would be hoisted out of it, and computed
+    /// for every packet of every scene.
+    #[inline(always)]
+    fn new(simd: S, skin: &Skin<S>, opacity: V3<S::f32s>) -> Self {
+        let Skin { color, metallic, roughness, .. } = *skin;
+        let one = S::f32s::splat(simd, 1.0);
+        let alpha = roughness * roughness;
+        Self {
+            own: roughness.simd_ge(S::f32s::splat(simd, 0.0)),
+            // A perfect mirror's highlight of a point light has no width: keep it visible and finite.
+            alpha2: (alpha * alpha).max(1e-6),
+            f0: V3::all((one - metallic) * 0.04) + color.scale(metallic),
+            diffuse: opacity * color.scale((one - metallic) * std::f32::consts::FRAC_1_PI),
+        }
+    }
+
     #[inline(always)]
     fn towards(
         &self,
@@ -142,9 +159,7 @@ impl<S: Simd> MetallicRoughness<S> {
         let n_dot_h = positive::<S>(normal.dot(half));
         let v_dot_h = positive::<S>(to_viewer.dot(half));
 
-        let alpha = self.roughness * self.roughness;
-        // A perfect mirror's highlight of a point light has no width: keep it visible and finite.
-        let alpha2 = (alpha * alpha).max(1e-6);
+        let Self { alpha2, f0, diffuse, .. } = *self;
         // (n·h)²(α²-1) + 1, but without its cancellation near the peak of a smooth surface's highlight.
         let across = normal.cross(half);
         let sine2 = across.dot(across);
@@ -158,9 +173,7 @@ impl<S: Simd> MetallicRoughness<S> {
         let x = one - v_dot_h;
         let x2 = x * x;
         let schlick = x2 * x2 * x;
-        let f0 = V3::all((one - self.metallic) * 0.04) + self.color.scale(self.metallic);
         let fresnel = f0 + (V3::all(one) - f0).scale(schlick);
-        let diffuse = self.opacity * self.color.scale((one - self.metallic) * std::f32::consts::FRAC_1_PI);
         ((V3::all(one) - fresnel) * diffuse + fresnel.scale(distribution * visibility)).scale(n_dot_l)
     }
 }

@@ -8,7 +8,7 @@ use super::frame::Frame;
 use super::materials::{Materials, MixedMaterials};
 use super::queue::MOST_LANES;
 use super::skin::Skin;
-use super::tables::{FlatMaterial, Row};
+use super::tables::Row;
 use super::texture_place::Sight;
 use crate::geometry::primitive::{
     Cone, Cutout, Disk, Kernel, Plane, Sphere, SurfacePoint, Triangle, for_each_primitive,
@@ -98,8 +98,6 @@ pub(super) struct Surfaces<S: Simd> {
     pub shading_normal: V3<S::f32s>,
     /// Weights of a triangle's corners in the kernel's order; only where the plan interpolates.
     pub weights: [S::f32s; 3],
-    /// From a triangle's first corner, in the kernel's order, to the second and third; as the weights.
-    pub edges: [V3<S::f32s>; 2],
     /// Bit set of the lanes whose primitive is flat.
     pub flat: u64,
 }
@@ -164,13 +162,11 @@ pub(super) fn surfaces_of_one<S: Simd>(
         point,
         shading_normal: point.normal,
         weights: [S::f32s::splat(simd, 0.0); 3],
-        edges: [V3::zero(simd); 2],
         flat: if slot.kind.is_flat() { hits.active } else { 0 },
     };
     if frame.plan.vertex_attributes && slot.kind.is_triangle() {
         let fields = geometry.triangles_of(slot.kind)[slot.block as usize].splat(simd, slot.place.into());
         surfaces.weights = Triangle::barycentric(&fields, &Rays::new(origin, direction));
-        surfaces.edges = Triangle::edges(&fields);
         interpolate_normals(simd, frame, hits, &mut surfaces);
     }
     surfaces
@@ -189,13 +185,7 @@ pub(super) fn surfaces_of_several<S: Simd>(
     let geometry = &frame.scene.geometry;
     let zero = S::f32s::splat(simd, 0.0);
     let blank = SurfacePoint { position: V3::all(zero), normal: V3::all(zero), scale: zero };
-    let mut surfaces = Surfaces {
-        point: blank,
-        shading_normal: V3::all(zero),
-        weights: [zero; 3],
-        edges: [V3::all(zero); 2],
-        flat: 0,
-    };
+    let mut surfaces = Surfaces { point: blank, shading_normal: V3::all(zero), weights: [zero; 3], flat: 0 };
     let places = Places::new(geometry, hits);
     let mut left = hits.active;
     while left != 0 {
@@ -224,9 +214,6 @@ pub(super) fn surfaces_of_several<S: Simd>(
             let weights = Triangle::barycentric(&fields, &Rays::new(origin, direction));
             for (known, found) in surfaces.weights.iter_mut().zip(weights) {
                 *known = mask.select(found, *known);
-            }
-            for (known, found) in surfaces.edges.iter_mut().zip(Triangle::edges(&fields)) {
-                *known = V3::select(mask, found, *known);
             }
         }
     }
@@ -395,7 +382,7 @@ pub(super) fn transmission<S: Simd>(
     let materials = MixedMaterials::new(simd, frame, &hits);
     let crossed = Mask::<S>::from_bitmask(simd, hits.active);
     let transparency = materials.triple(simd, Row::Transparency);
-    let varies = frame.plan.vertex_colors || frame.plan.textures && materials.any(FlatMaterial::is_textured);
+    let varies = frame.plan.vertex_colors || frame.plan.textures && materials.any(|material| material.textured);
     if !varies && !frame.plan.blending {
         return V3::select(crossed, transparency * materials.triple(simd, Row::Color), one);
     }

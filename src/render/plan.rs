@@ -1,6 +1,6 @@
 //! The cheapest pipeline that draws a scene: what of the tracer a frame runs, and why.
 
-use super::tables::{FlatMaterial, Tables};
+use super::tables::Tables;
 use crate::geometry::PrimitiveKind;
 use crate::scene::{Scene, Texture};
 use crate::settings::{Fill, Settings, SphereCache, Visibility};
@@ -37,6 +37,8 @@ pub struct Plan {
     pub vertex_attributes: bool,
     /// Keep track of how texture coordinates grow along surfaces, and of how wide rays are.
     pub gradients: bool,
+    /// Some surface is reached by less of the ambient light.
+    pub occlusion: bool,
     /// Some surface has relief.
     pub relief: bool,
     /// Some triangles carry tangents.
@@ -94,9 +96,10 @@ impl Plan {
             refractions,
             media: !tables.transparent_bodies.is_empty(),
             absorption: tables.transparent_bodies.iter().any(|&object| absorbs(object)),
-            textures: tables.materials.iter().any(FlatMaterial::is_textured),
+            textures: tables.materials.iter().any(|m| m.textured),
             vertex_attributes: !scene.geometry.attributes.is_empty() || !scene.geometry.extras.is_empty(),
             gradients: relief || scene.textures.iter().any(Texture::is_filtered),
+            occlusion: tables.materials.iter().any(|m| m.maps.occlusion.is_some()),
             relief,
             tangents: relief && tables.tangents,
             vertex_colors: tables.vertex_colors,

@@ -36,7 +36,7 @@ pub(super) fn shifted<S: Simd>(
     let along = sight.direction.scale(S::f32s::splat(simd, parallax.scale) / cosine);
     let step = [gu.dot(along) * (1.0 / STEPS as f32), gv.dot(along) * (1.0 / STEPS as f32)];
     // How far the ray is below the height field; less than 0 above it.
-    let mut before = place.look(simd, frame, &parallax.lookup, sight, members).color.x - one;
+    let mut before = place.look::<false>(simd, frame, &parallax.lookup, sight, members).color.x - one;
     let mut found = S::f32s::splat(simd, 0.0);
     let mut searching = before.simd_lt(0.0);
     for number in 1..=STEPS {
@@ -44,7 +44,7 @@ pub(super) fn shifted<S: Simd>(
             break;
         }
         let steps = S::f32s::splat(simd, number as f32);
-        let height = moved(place, step, steps).look(simd, frame, &parallax.lookup, sight, members).color.x;
+        let height = moved(place, step, steps).look::<false>(simd, frame, &parallax.lookup, sight, members).color.x;
         let now = steps * (1.0 / STEPS as f32) - (one - height);
         let crossed = searching & now.simd_ge(0.0);
         // Between -before and now, in proportion.
@@ -78,7 +78,7 @@ pub(super) fn normal<S: Simd>(
     let mut normal = surfaces.shading_normal;
     if let Some(Scaled { lookup, scale }) = &relief.normal {
         let place = &places[usize::from(lookup.set)];
-        let found = place.look(simd, frame, lookup, sight, members).color;
+        let found = place.look::<false>(simd, frame, lookup, sight, members).color;
         let (x, y, z) = ((found.x * 2.0 - 1.0) * *scale, (found.y * 2.0 - 1.0) * *scale, found.z * 2.0 - 1.0);
         let [along_u, along_v] = tangents(simd, frame, hits, surfaces, normal, place.gradients_of(lookup));
         let bent = along_u.scale(x) + along_v.scale(y) + normal.scale(z);
@@ -116,7 +116,7 @@ fn slope<S: Simd>(
     let dv = (gv.dot(gv) * width2).sqrt().max(size[1]);
     let mut heights = [zero; 3];
     for (height, step) in heights.iter_mut().zip([[zero; 2], [du, zero], [zero, dv]]) {
-        *height = moved(place, step, one).look(simd, frame, &bump.lookup, sight, members).color.x;
+        *height = moved(place, step, one).look::<false>(simd, frame, &bump.lookup, sight, members).color.x;
     }
     let [here, right, above] = heights;
     let (along_u, along_v) = ((right - here) / du, (above - here) / dv);

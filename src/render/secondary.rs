@@ -91,7 +91,7 @@ pub(super) fn follow<S: Simd>(
     };
     if transparent.lanes != 0 {
         let index = outside_index(simd, frame, incident, &transparent, media);
-        let through = refract(simd, materials, incident, cosine, index, transparent.bodies);
+        let through = refract(simd, frame, materials, incident, cosine, index, transparent.bodies);
         let lanes = Mask::<S>::from_bitmask(simd, transparent.lanes);
         split.reflected = V3::select(lanes, through.reflected, split.reflected);
         split.refracted = V3::select(lanes, through.refracted, split.refracted);
@@ -208,6 +208,7 @@ fn outside_index<S: Simd>(
 #[inline(always)]
 fn refract<S: Simd>(
     simd: S,
+    frame: &Frame<'_>,
     materials: &impl Materials<S>,
     incident: &Incident<'_, S>,
     cosine: S::f32s,
@@ -229,7 +230,10 @@ fn refract<S: Simd>(
     let mirrored = total.select(one, mirrored);
 
     let bent = incident.direction.scale(eta) + incident.normal.scale(eta * cosine - cosine_inward);
-    let transparency = materials.triple(simd, Row::Transparency).scale(incident.skin.transmission);
+    let mut transparency = materials.triple(simd, Row::Transparency);
+    if frame.plan.textures {
+        transparency = transparency.scale(incident.skin.transmission);
+    }
     Split {
         reflected: materials.triple(simd, Row::Reflectivity) + transparency.scale(mirrored),
         refracted: transparency.scale(one - mirrored),

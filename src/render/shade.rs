@@ -145,7 +145,7 @@ fn follow_one<S: Simd>(simd: S, frame: &Frame<'_>, at: usize, primitive: Primiti
     let rays = Incoming::load(simd, &worker.rays, at);
     let surfaces = surfaces_of_one(simd, frame, &hits, primitive, rays.origin, rays.direction, rays.t);
     let skin = Skin::of(simd, frame, &hits, &surfaces, &materials, &rays.sight(frame, &surfaces));
-    let view = View::new(simd, &surfaces, skin.normal, rays.direction);
+    let view = View::new(simd, &surfaces, skin.normal(frame, &surfaces), rays.direction);
     follow(simd, frame, 1, at, &hits, &rays, &surfaces, &view, &materials, &skin, worker);
 }
 
@@ -213,7 +213,7 @@ fn shade_surfaces<S: Simd>(
         Paint::White => Skin::plain(simd, frame, surfaces, materials).painted(V3::splat(simd, Vec3::ONE)),
         Paint::Black => Skin::plain(simd, frame, surfaces, materials).painted(V3::zero(simd)),
     };
-    let view = View::new(simd, surfaces, skin.normal, direction);
+    let view = View::new(simd, surfaces, skin.normal(frame, surfaces), direction);
     if level == 1 && frame.keeps_normals && paint.is_none() {
         for lane in hits.lanes() {
             seen[samples[lane] as usize].normal = view.normal.lane(lane).into();
@@ -226,12 +226,15 @@ fn shade_surfaces<S: Simd>(
         opacity = one - materials.triple(simd, Row::Transparency).scale(skin.transmission);
     }
     let active = Mask::<S>::from_bitmask(simd, hits.active);
-    let mut ambient = V3::splat(simd, frame.ambient) * materials.triple(simd, Row::Ambient).scale(skin.openness);
+    let mut ambient = V3::splat(simd, frame.ambient) * materials.triple(simd, Row::Ambient);
+    if frame.plan.occlusion {
+        ambient = ambient.scale(skin.openness);
+    }
     if frame.plan.unlit {
         let unlit = materials.lanes(simd, |material| material.unlit);
         ambient = V3::select(unlit, V3::splat(simd, Vec3::ONE), ambient);
     }
-    let covered = weight.scale(skin.coverage);
+    let covered = if frame.plan.blending { weight.scale(skin.coverage) } else { weight };
     let own = covered * (opacity * ambient * skin.color + skin.emission);
     let background = weight * V3::splat(simd, frame.scene.render.background);
     let own = V3::select(active, own, background);
@@ -402,7 +405,8 @@ fn seen_normal<S: Simd>(
     let mut normal = surfaces.shading_normal;
     if frame.plan.relief {
         let materials = MixedMaterials::new(simd, frame, hits);
-        normal = Skin::of(simd, frame, hits, surfaces, &materials, &Sight::new(frame, surfaces, direction, t)).normal;
+        let sight = Sight::new(frame, surfaces, direction, t);
+        normal = Skin::of(simd, frame, hits, surfaces, &materials, &sight).normal(frame, surfaces);
     }
     View::new(simd, surfaces, normal, direction).normal
 }

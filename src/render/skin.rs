@@ -5,7 +5,7 @@ use super::gather::{Hits, Surfaces};
 use super::materials::Materials;
 use super::queue::MOST_LANES;
 use super::relief;
-use super::tables::{FlatMaterial, Row};
+use super::tables::Row;
 use super::texture_place::{Place, Sight};
 use crate::math::V3;
 use crate::scene::material::Lookup;
@@ -34,8 +34,8 @@ pub(super) struct Skin<S: Simd> {
     pub openness: S::f32s,
     /// Multiplies the transparency.
     pub transmission: S::f32s,
-    /// Unit normal for shading, on the side of the geometric one.
-    pub normal: V3<S::f32s>,
+    /// Unit normal for shading, where the plan has relief.
+    relieved: V3<S::f32s>,
 }
 
 impl<S: Simd> Skin<S> {
@@ -51,19 +51,54 @@ impl<S: Simd> Skin<S> {
     ) -> Self {
         let mut skin = Self::plain(simd, frame, surfaces, materials);
         if frame.plan.vertex_colors {
-            simd.vectorize(
-                #[inline(always)]
-                || skin.tint(simd, frame, hits, surfaces, materials),
-            );
+            skin = skin.tinted(simd, frame, hits, surfaces, materials);
         }
-        if frame.plan.textures && materials.any(FlatMaterial::is_textured) {
-            let textured = materials.lanes(simd, FlatMaterial::is_textured).to_bitmask() & hits.active;
-            simd.vectorize(
-                #[inline(always)]
-                || skin.look_up(simd, frame, hits, surfaces, sight, textured),
-            );
+        if frame.plan.textures && materials.any(|material| material.textured) {
+            let textured = materials.lanes(simd, |material| material.textured).to_bitmask() & hits.active;
+            skin = skin.textured(simd, frame, hits, surfaces, sight, textured);
         }
         skin
+    }
+
+    /// [`tint`](Self::tint), apart from packets that need none. By value: what has an address stays in memory.
+    #[inline(always)]
+    fn tinted(
+        self,
+        simd: S,
+        frame: &Frame<'_>,
+        hits: &Hits<'_>,
+        surfaces: &Surfaces<S>,
+        materials: &impl Materials<S>,
+    ) -> Self {
+        simd.vectorize(
+            #[inline(always)]
+            move || {
+                let mut skin = self;
+                skin.tint(simd, frame, hits, surfaces, materials);
+                skin
+            },
+        )
+    }
+
+    /// [`look_up`](Self::look_up), in the same way.
+    #[inline(always)]
+    fn textured(
+        self,
+        simd: S,
+        frame: &Frame<'_>,
+        hits: &Hits<'_>,
+        surfaces: &Surfaces<S>,
+        sight: &Sight<S>,
+        textured: u64,
+    ) -> Self {
+        simd.vectorize(
+            #[inline(always)]
+            move || {
+                let mut skin = self;
+                skin.look_up(simd, frame, hits, surfaces, sight, textured);
+                skin
+            },
+        )
     }
 
     /// As the materials have it, whatever textures and corners hold.
@@ -78,7 +113,7 @@ impl<S: Simd> Skin<S> {
             roughness: -one,
             openness: one,
             transmission: one,
-            normal: surfaces.shading_normal,
+            relieved: surfaces.shading_normal,
         };
         if frame.plan.emission {
             skin.emission = materials.triple(simd, Row::Emission);
@@ -91,6 +126,12 @@ impl<S: Simd> Skin<S> {
             skin.roughness = materials.row(simd, Row::Roughness as usize);
         }
         skin
+    }
+
+    /// Unit normal for shading, on the side of the geometric one.
+    #[inline(always)]
+    pub fn normal(&self, frame: &Frame<'_>, surfaces: &Surfaces<S>) -> V3<S::f32s> {
+        if frame.plan.relief { self.relieved } else { surfaces.shading_normal }
     }
 
     /// In another colour.
@@ -189,29 +230,31 @@ impl<S: Simd> Skin<S> {
                 let place = &mut places[usize::from(parallax.lookup.set)];
                 *place = relief::shifted(simd, frame, surfaces, sight, place, parallax, object.members);
             }
-            skin.normal = relief::normal(simd, frame, hits, surfaces, sight, &places, relief, object.members);
+            skin.relieved = relief::normal(simd, frame, hits, surfaces, sight, &places, relief, object.members);
         }
         let looks = Looks { frame, sight, places, members: object.members };
         if let Some(color) = &maps.color {
-            let found = looks.at(simd, color);
-            skin.color = skin.color * found.color;
             if material.blended {
+                let found = looks.at::<true>(simd, color);
+                skin.color = skin.color * found.color;
                 skin.coverage *= found.opacity;
+            } else {
+                skin.color = skin.color * looks.at::<false>(simd, color).color;
             }
         }
         if let Some(emission) = &maps.emission {
-            skin.emission = skin.emission * looks.at(simd, emission).color;
+            skin.emission = skin.emission * looks.at::<false>(simd, emission).color;
         }
         if let Some(map) = &maps.metallic_roughness {
-            let found = looks.at(simd, map).color;
+            let found = looks.at::<false>(simd, map).color;
             skin.metallic *= found.z;
             skin.roughness *= found.y;
         }
         if let Some(occlusion) = &maps.occlusion {
-            skin.openness = (looks.at(simd, &occlusion.lookup).color.x - 1.0) * occlusion.scale + 1.0;
+            skin.openness = (looks.at::<false>(simd, &occlusion.lookup).color.x - 1.0) * occlusion.scale + 1.0;
         }
         if let Some(transmission) = &maps.transmission {
-            skin.transmission = looks.at(simd, transmission).color.x;
+            skin.transmission = looks.at::<false>(simd, transmission).color.x;
         }
         skin
     }
@@ -226,7 +269,7 @@ impl<S: Simd> Skin<S> {
             roughness: mask.select(a.roughness, b.roughness),
             openness: mask.select(a.openness, b.openness),
             transmission: mask.select(a.transmission, b.transmission),
-            normal: V3::select(mask, a.normal, b.normal),
+            relieved: V3::select(mask, a.relieved, b.relieved),
         }
     }
 }
@@ -243,8 +286,8 @@ struct Looks<'a, S: Simd> {
 
 impl<S: Simd> Looks<'_, S> {
     #[inline(always)]
-    fn at(&self, simd: S, lookup: &Lookup) -> Texel<S> {
-        self.places[usize::from(lookup.set)].look(simd, self.frame, lookup, self.sight, self.members)
+    fn at<const OPACITY: bool>(&self, simd: S, lookup: &Lookup) -> Texel<S> {
+        self.places[usize::from(lookup.set)].look::<OPACITY>(simd, self.frame, lookup, self.sight, self.members)
     }
 }
 

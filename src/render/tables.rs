@@ -68,6 +68,8 @@ pub struct FlatMaterial {
     pub unlit: bool,
     /// Whether it has relief.
     pub relieved: bool,
+    /// Whether anything of it is looked up.
+    pub textured: bool,
 }
 
 /// Where the numbers of a material vary over its surface.
@@ -151,6 +153,8 @@ impl FlatMaterial {
             }
         }
         let metallic_roughness = matches!(material.model, Model::MetallicRoughness { .. }) && !material.unlit;
+        let maps = Maps::new(material);
+        let textured = maps.lookups().next().is_some();
         let mirrors = metallic_roughness || material.reflectivity != Vec3::ZERO;
         Self {
             shiny: rows[Row::Specular as usize..][..3] != [0.0; 3],
@@ -158,7 +162,8 @@ impl FlatMaterial {
             transparent: material.is_transparent(),
             fresnel: material.fresnel,
             rows,
-            maps: Maps::new(material),
+            textured,
+            maps,
             metallic_roughness,
             // What is seen straight through is so however rough the surface.
             secondary: material.is_blended() || !material.unlit && smooth && (mirrors || material.is_transparent()),
@@ -175,11 +180,6 @@ fn highlight_edge2(shininess: f32) -> f32 {
 }
 
 impl FlatMaterial {
-    /// Whether anything of it is looked up.
-    pub fn is_textured(&self) -> bool {
-        self.maps.lookups().next().is_some()
-    }
-
     /// Whether its light varies by more than its colour: what is interpolated would be missing something.
     pub fn is_uneven(&self) -> bool {
         let Maps { metallic_roughness, occlusion, .. } = &self.maps;

@@ -108,7 +108,7 @@ impl<S: Simd> Place<S> {
         let mut gradients = [V3::zero(simd); 2];
         if frame.plan.gradients {
             // What is linear on a triangle grows along the altitudes of its corners.
-            let [to_b, to_c] = surfaces.edges;
+            let [to_b, to_c] = edges(simd, frame, hits);
             let normal = to_b.cross(to_c);
             let inverse = S::f32s::splat(simd, 1.0) / normal.dot(normal);
             let (of_b, of_c) = (to_c.cross(normal).scale(inverse), normal.cross(to_b).scale(inverse));
@@ -134,15 +134,22 @@ impl<S: Simd> Place<S> {
         }
     }
 
-    /// What a texture holds here, for the lanes in the bit set `members`.
+    /// What a texture holds here (opacities only if `OPACITY`), for the lanes in the bit set `members`.
     #[inline(always)]
-    pub fn look(&self, simd: S, frame: &Frame<'_>, lookup: &Lookup, sight: &Sight<S>, members: u64) -> Texel<S> {
+    pub fn look<const OPACITY: bool>(
+        &self,
+        simd: S,
+        frame: &Frame<'_>,
+        lookup: &Lookup,
+        sight: &Sight<S>,
+        members: u64,
+    ) -> Texel<S> {
         let Self { uv, gradients: [gu, gv] } = self.transformed(&lookup.transform);
         let spread2 = sight.width2.map(
             #[inline(always)]
             |width2| [gu.dot(gu) * width2, gv.dot(gv) * width2],
         );
-        frame.scene.textures[lookup.texture as usize].sample(simd, &Coordinates { uv, spread2 }, members)
+        frame.scene.textures[lookup.texture as usize].sample::<S, OPACITY>(simd, &Coordinates { uv, spread2 }, members)
     }
 
     /// How the coordinates of a lookup grow along the surface.
@@ -150,6 +157,19 @@ impl<S: Simd> Place<S> {
     pub fn gradients_of(&self, lookup: &Lookup) -> [V3<S::f32s>; 2] {
         self.transformed(&lookup.transform).gradients
     }
+}
+
+/// From the first corner of each lane's triangle, in the kernel's order, to the second and third; 0 for other shapes.
+#[inline(always)]
+fn edges<S: Simd>(simd: S, frame: &Frame<'_>, hits: &Hits<'_>) -> [V3<S::f32s>; 2] {
+    let geometry = &frame.scene.geometry;
+    let [ax, ay, az, bx, by, bz, cx, cy, cz] = hits.gather::<S, 9>(
+        simd,
+        #[inline(always)]
+        |primitive| geometry.corners_of(primitive),
+    );
+    let corner = V3::new(ax, ay, az);
+    [V3::new(bx, by, bz) - corner, V3::new(cx, cy, cz) - corner]
 }
 
 /// a x + b y.

@@ -78,9 +78,10 @@ pub struct Coordinates<S: Simd> {
 }
 
 impl Texture {
-    /// The linear values at surface coordinates of the lanes in the bit set `lanes`; others get anything.
+    /// The linear values at surface coordinates of the lanes in the bit set `lanes`; others get anything. Opacities only
+    /// if `OPACITY`.
     #[inline(always)]
-    pub fn sample<S: Simd>(&self, simd: S, coordinates: &Coordinates<S>, lanes: u64) -> Texel<S> {
+    pub fn sample<S: Simd, const OPACITY: bool>(&self, simd: S, coordinates: &Coordinates<S>, lanes: u64) -> Texel<S> {
         let [u, v] = coordinates.uv;
         match self {
             Self::Checker { colors: [even, odd], size } => {
@@ -97,7 +98,7 @@ impl Texture {
                     let [width, height] = [texels.width(), texels.height()].map(|edge| edge as f32 * repetitions);
                     footprint2 = Some((across * (width * width)).max(up * (height * height)));
                 }
-                texels.sample(simd, [u * repetitions, v * repetitions], footprint2, sampler, lanes)
+                texels.sample::<S, OPACITY>(simd, [u * repetitions, v * repetitions], footprint2, sampler, lanes)
             }
         }
     }

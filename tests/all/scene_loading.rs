@@ -201,5 +201,5 @@ fn a_checker_starts_with_its_first_colour() {
 /// The red that a texture holds at (u, v).
 fn red_at<S: Simd>(simd: S, texture: &Texture, u: f32, v: f32) -> f32 {
     let uv = [S::f32s::splat(simd, u), S::f32s::splat(simd, v)];
-    texture.sample(simd, &Coordinates { uv, spread2: None }, 1).color.x[0]
+    texture.sample::<S, false>(simd, &Coordinates { uv, spread2: None }, 1).color.x[0]
 }

@@ -147,13 +147,6 @@ impl Triangle {
         ]
     }
 
-    /// From the first stored corner to the second and to the third.
-    #[inline(always)]
-    pub fn edges<S: Simd, F: Lanes<S>>(fields: &[F; 10]) -> [V3<F>; 2] {
-        let [a, b, c] = Self::corners(fields);
-        [b - a, c - a]
-    }
-
     /// Barycentric weights of the stored corners at the hit, summing to 1.
     #[inline(always)]
     pub fn barycentric<S: Simd, F: Lanes<S>>(fields: &[F; 10], rays: &Rays<F>) -> [F; 3] {

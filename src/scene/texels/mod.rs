@@ -45,12 +45,12 @@ const TILE_SHIFT: u32 = 2;
 /// Edge of a tile in texels.
 const TILE: u32 = 1 << TILE_SHIFT;
 
-/// What a lookup finds: linear colour or data, and opacity.
+/// What a lookup finds: linear colour or data, and opacity if that was asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Texel<S: Simd> {
     /// Red, green and blue.
     pub color: V3<S::f32s>,
-    /// From 0 to 1.
+    /// From 0 to 1; 0 if nobody asked.
     pub opacity: S::f32s,
 }
 
@@ -62,9 +62,10 @@ impl<S: Simd> Texel<S> {
 
     /// `a` and so much of `b` as `share` says.
     #[inline(always)]
-    fn mix(simd: S, a: Self, b: Self, share: S::f32s) -> Self {
+    fn mix<const OPACITY: bool>(simd: S, a: Self, b: Self, share: S::f32s) -> Self {
         let rest = S::f32s::splat(simd, 1.0) - share;
-        Self { color: a.color.scale(rest) + b.color.scale(share), opacity: a.opacity * rest + b.opacity * share }
+        let color = a.color.scale(rest) + b.color.scale(share);
+        Self { color, opacity: if OPACITY { a.opacity * rest + b.opacity * share } else { a.opacity } }
     }
 }
 
@@ -149,7 +150,7 @@ impl Texels {
     /// v = 0 is the bottom of the lowest row. `footprint2` is the square of how far neighbouring rays lie apart on the
     /// picture, in texels of the full size; `None` for no distance at all.
     #[inline(always)]
-    pub(super) fn sample<S: Simd>(
+    pub(super) fn sample<S: Simd, const OPACITY: bool>(
         &self,
         simd: S,
         coordinates: [S::f32s; 2],
@@ -164,21 +165,25 @@ impl Texels {
             #[inline(always)]
             |footprint2| footprint2.simd_gt(one).to_bitmask() & lanes != 0,
         ) else {
-            return self.sample_level(simd, coordinates, 0, sampler, sampler.magnification, lanes);
+            return self.sample_level::<S, OPACITY>(simd, coordinates, 0, sampler, sampler.magnification, lanes);
         };
         let is_minified = minified.simd_gt(one) & minified.simd_lt(S::f32s::splat(simd, f32::MAX));
         let Some(between) = sampler.between_levels.filter(|_| self.levels.len() > 1) else {
-            let near = self.sample_level(simd, coordinates, 0, sampler, sampler.magnification, lanes);
+            let near = self.sample_level::<S, OPACITY>(simd, coordinates, 0, sampler, sampler.magnification, lanes);
             if sampler.minification == sampler.magnification {
                 return near;
             }
-            let far = self.sample_level(simd, coordinates, 0, sampler, sampler.minification, lanes);
+            let far = self.sample_level::<S, OPACITY>(simd, coordinates, 0, sampler, sampler.minification, lanes);
             return Texel::select(is_minified, far, near);
         };
         let last = S::f32s::splat(simd, (self.levels.len() - 1) as f32);
         let detail = (log2::<S, S::f32s>(is_minified.select(minified, one)) * 0.5).min(last);
         let (level, share) = match between {
-            Blending::Linear => (detail.floor(), detail - detail.floor()),
+            // Near a size it is taken alone, as graphics hardware does: that saves a quarter of all lookups.
+            Blending::Linear => {
+                let level = (detail + 0.25).floor();
+                (level, ((detail - level - 0.25) * 2.0).max(0.0))
+            }
             Blending::Nearest => ((detail + 0.5).floor(), zero),
         };
         let mut found = Texel { color: V3::all(zero), opacity: zero };
@@ -190,24 +195,26 @@ impl Texels {
             left &= !own;
             let number = number as usize;
             let blending = sampler.minification;
-            let mut texel = self.sample_level(simd, coordinates, number, sampler, blending, own);
+            let mut texel = self.sample_level::<S, OPACITY>(simd, coordinates, number, sampler, blending, own);
             let blended = share.simd_gt(zero);
             let between = blended.to_bitmask() & own;
             if between != 0 {
-                let coarser = self.sample_level(simd, coordinates, number + 1, sampler, blending, between);
-                texel = Texel::select(blended, Texel::mix(simd, texel, coarser, share), texel);
+                let coarser =
+                    self.sample_level::<S, OPACITY>(simd, coordinates, number + 1, sampler, blending, between);
+                texel = Texel::select(blended, Texel::mix::<OPACITY>(simd, texel, coarser, share), texel);
             }
             found = Texel::select(same, texel, found);
         }
         if sampler.magnification != sampler.minification {
-            let magnified = self.sample_level(simd, coordinates, 0, sampler, sampler.magnification, lanes);
+            let magnified =
+                self.sample_level::<S, OPACITY>(simd, coordinates, 0, sampler, sampler.magnification, lanes);
             found = Texel::select(is_minified, found, magnified);
         }
         found
     }
 
     /// Lookup in one size. Not inlined: it is called for every size and way of blending.
-    fn sample_level<S: Simd>(
+    fn sample_level<S: Simd, const OPACITY: bool>(
         &self,
         simd: S,
         coordinates: [S::f32s; 2],
@@ -218,12 +225,21 @@ impl Texels {
     ) -> Texel<S> {
         simd.vectorize(
             #[inline(always)]
-            || self.sample_level_inlined(simd, coordinates, &self.levels[level], sampler, blending, lanes),
+            || {
+                self.sample_level_inlined::<S, OPACITY>(
+                    simd,
+                    coordinates,
+                    &self.levels[level],
+                    sampler,
+                    blending,
+                    lanes,
+                )
+            },
         )
     }
 
     #[inline(always)]
-    fn sample_level_inlined<S: Simd>(
+    fn sample_level_inlined<S: Simd, const OPACITY: bool>(
         &self,
         simd: S,
         [u, v]: [S::f32s; 2],
@@ -239,10 +255,10 @@ impl Texels {
         let [left, right] = [columns::<S>(left), columns::<S>(right)];
         let [upper, lower] = [level.rows(simd, upper), level.rows(simd, lower)];
         let places = [upper + left, upper + right, lower + left, lower + right];
-        let [upper_left, upper_right, lower_left, lower_right] = self.gather(simd, &places, lanes);
-        let upper = Texel::mix(simd, upper_left, upper_right, across);
-        let lower = Texel::mix(simd, lower_left, lower_right, across);
-        Texel::mix(simd, upper, lower, down)
+        let [upper_left, upper_right, lower_left, lower_right] = self.gather::<S, OPACITY>(simd, &places, lanes);
+        let upper = Texel::mix::<OPACITY>(simd, upper_left, upper_right, across);
+        let lower = Texel::mix::<OPACITY>(simd, lower_left, lower_right, across);
+        Texel::mix::<OPACITY>(simd, upper, lower, down)
     }
 
     /// The texels at four places a lane, linear; 0 in the lanes that are not in the bit set `lanes`.
@@ -251,7 +267,7 @@ impl Texels {
     /// faster where they fit the cache, but slower where they do not, and no longer exact. Separate loops that load and
     /// decode become gather instructions, which are slower than this.
     #[inline(always)]
-    fn gather<S: Simd>(&self, simd: S, places: &[S::u32s; 4], lanes: u64) -> [Texel<S>; 4] {
+    fn gather<S: Simd, const OPACITY: bool>(&self, simd: S, places: &[S::u32s; 4], lanes: u64) -> [Texel<S>; 4] {
         let (texels, decode) = (&*self.texels, decode_table(self.encoding));
         let zero = S::f32s::splat(simd, 0.0);
         let mut found = [Texel::<S> { color: V3::all(zero), opacity: zero }; 4];
@@ -264,7 +280,9 @@ impl Texels {
                 found.color.x.as_mut_slice()[lane] = decode[usize::from(r)];
                 found.color.y.as_mut_slice()[lane] = decode[usize::from(g)];
                 found.color.z.as_mut_slice()[lane] = decode[usize::from(b)];
-                found.opacity.as_mut_slice()[lane] = f32::from(a) * (1.0 / 255.0);
+                if OPACITY {
+                    found.opacity.as_mut_slice()[lane] = f32::from(a) * (1.0 / 255.0);
+                }
             }
         }
         found
@@ -381,7 +399,7 @@ mod tests {
     fn lanes<S: Simd>(simd: S, texels: &Texels, [u, v]: [f32; 2], footprint: f32, sampler: &Sampler) -> [f32; 3] {
         let coordinates = [S::f32s::splat(simd, u), S::f32s::splat(simd, v)];
         let footprint2 = S::f32s::splat(simd, footprint * footprint);
-        let found = texels.sample(simd, coordinates, Some(footprint2), sampler, (1 << S::f32s::LEN) - 1);
+        let found = texels.sample::<S, true>(simd, coordinates, Some(footprint2), sampler, (1 << S::f32s::LEN) - 1);
         found.color.lane(S::f32s::LEN - 1).into()
     }
 

@@ -108,7 +108,9 @@ fn sample(image: &ImageTexture, uv: DVec2, spread: [f64; 2]) -> DVec3 {
     let last = image.texels.levels() - 1;
     let level = (spread[0] * width).max(spread[1] * height).log2().clamp(0.0, last as f64);
     let finer = sample_level(image, uv, level.floor() as usize);
-    finer.lerp(sample_level(image, uv, last.min(level.floor() as usize + 1)), level.fract())
+    // Within a quarter of a size, it alone.
+    let share = (level.fract() * 2.0 - 0.5).clamp(0.0, 1.0);
+    finer.lerp(sample_level(image, uv, last.min(level.floor() as usize + 1)), share)
 }
 
 fn sample_level(image: &ImageTexture, uv: DVec2, level: usize) -> DVec3 {
