@@ -14,8 +14,8 @@ use gltf::json::{self, Index};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Textures that name an image of a kind that is not decoded, in the order of preference for one that is.
-const OTHER_SOURCES: [&str; 2] = ["EXT_texture_webp", "MSFT_texture_dds"];
+/// The extension by which a texture names an image in WebP.
+const WEBP: &str = "EXT_texture_webp";
 
 /// The textures that materials use, described once each.
 pub struct Textures<'d> {
@@ -106,14 +106,13 @@ impl<'d> Textures<'d> {
 
     /// Where the image of a texture is.
     fn source(&mut self, texture: &json::Texture, i: usize, report: &mut Report) -> Read<Option<ImageSource>> {
-        let others = texture.extensions.as_ref().map(|extensions| &extensions.others);
-        let other = |name: &&str| {
-            let source = others?.get(*name)?.get("source")?.as_u64()?;
+        let webp = || {
+            let source = texture.extensions.as_ref()?.others.get(WEBP)?.get("source")?.as_u64()?;
             u32::try_from(source).ok().map(Index::new)
         };
         // The crate's mark of a texture without a source.
         let plain = (texture.source.value() != u32::MAX as usize).then_some(texture.source);
-        let Some(index) = plain.or_else(|| OTHER_SOURCES.iter().find_map(other)) else {
+        let Some(index) = plain.or_else(webp) else {
             report.warn(format!("/textures/{i}"), "the texture has no image of a known kind; it is not shown");
             return Ok(None);
         };
