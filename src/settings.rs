@@ -453,7 +453,9 @@ pub const ROWS: &[Row] = &[
             s.exposure = match text {
                 "scene" => Exposure::Scene,
                 "auto" => Exposure::Auto,
-                _ => Exposure::Stops(number(text, -20.0, 20.0).map_err(|message| format!("{message}, or auto"))? as f32),
+                _ => {
+                    Exposure::Stops(number(text, -20.0, 20.0).map_err(|message| format!("{message}, or auto"))? as f32)
+                }
             };
             Ok(())
         },

@@ -9,9 +9,9 @@ mod cli;
 mod determinism;
 mod exactness;
 mod flat_mirrors;
-mod gltf;
 #[path = "../common/flips.rs"]
 mod flips;
+mod gltf;
 mod imports;
 mod interpolation;
 mod our_scenes;

@@ -101,7 +101,10 @@ fn irradiance(probe: &mut Probe, point: Vec3, normal: Vec3, lights: &[Light]) ->
     let step = 1e-4 * point.abs().max_element().max(1.0);
     let in_the_way = probe.look(point + normal * step, &towards, 0.0);
     let reaching = in_the_way.iter().zip(arriving);
-    reaching.filter(|(met, (distance, _))| met.is_none_or(|met| met.distance >= distance * 0.999)).map(|(_, (_, e))| e).sum()
+    reaching
+        .filter(|(met, (distance, _))| met.is_none_or(|met| met.distance >= distance * 0.999))
+        .map(|(_, (_, e))| e)
+        .sum()
 }
 
 #[cfg(test)]

@@ -103,10 +103,13 @@ fn wrong_json_names_its_line_and_pointer() {
         assert!(error.contains(says), "{text}: {error}");
         assert!(!error.contains('\n'), "{error}");
     }
-    let nested = format!(r#"{{ "asset": {{ "version": "2.0" }}, "extras": {}{} }}"#, "[".repeat(5000), "]".repeat(5000));
+    let nested =
+        format!(r#"{{ "asset": {{ "version": "2.0" }}, "extras": {}{} }}"#, "[".repeat(5000), "]".repeat(5000));
     assert!(try_load(nested).unwrap_err().to_string().contains("nesting"));
     for extras in ["1", "\"x\"", "[[]]", "null"] {
-        let text = format!(r#"{{ "asset": {{ "version": "2.0", "extras": {extras} }}, "nodes": [{{ "extras": {extras} }}] }}"#);
+        let text = format!(
+            r#"{{ "asset": {{ "version": "2.0", "extras": {extras} }}, "nodes": [{{ "extras": {extras} }}] }}"#
+        );
         assert!(try_load(text).is_ok(), "{extras}");
     }
 }
@@ -126,9 +129,8 @@ fn rich() -> (File, String) {
     ));
     let weights = file.vectors(&[[1.0, 0.0, 0.0, 0.0]; 3]);
     let view = file.view(&[0; 12], "");
-    let joints = file.accessor(format!(
-        r#"{{ "bufferView": {view}, "componentType": 5121, "count": 3, "type": "VEC4" }}"#
-    ));
+    let joints =
+        file.accessor(format!(r#"{{ "bufferView": {view}, "componentType": 5121, "count": 3, "type": "VEC4" }}"#));
     let rest = format!(
         r#""scene": 0, "scenes": [{{ "nodes": [0, 1, 3, 4] }}],
         "nodes": [{{ "mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], "children": [2] }},
@@ -153,7 +155,20 @@ fn rich() -> (File, String) {
 #[test]
 fn mutated_files_never_panic() {
     const TOKENS: [&[u8]; 14] = [
-        b"{", b"}", b"[", b"]", b"\"", b",", b"-", b"1e39", b"null", b"0", b"[]", b"4294967297", b"18446744073709551615", b"%",
+        b"{",
+        b"}",
+        b"[",
+        b"]",
+        b"\"",
+        b",",
+        b"-",
+        b"1e39",
+        b"null",
+        b"0",
+        b"[]",
+        b"4294967297",
+        b"18446744073709551615",
+        b"%",
     ];
     let folder = Folder::new();
     let (file, rest) = rich();

@@ -157,7 +157,11 @@ fn images_that_cannot_be_had_are_told_and_the_rest_is_shown() {
     ] {
         let scene = textured(&folder, material, &format!(r#""textures": [{{ "source": 0 }}], "images": [{image}]"#));
         assert_eq!(scene.objects.len(), 1);
-        assert!(warnings(&scene)[0].starts_with("/images/0") && warnings(&scene)[0].contains(says), "{image}: {:?}", warnings(&scene));
+        assert!(
+            warnings(&scene)[0].starts_with("/images/0") && warnings(&scene)[0].contains(says),
+            "{image}: {:?}",
+            warnings(&scene)
+        );
     }
 }
 

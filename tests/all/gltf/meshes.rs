@@ -18,19 +18,16 @@ const UNIT: [Vec3; 2] = [Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0)];
 
 #[test]
 fn indices_of_every_type_and_none_give_the_same_triangle() {
-    for (component, bytes) in [
-        (5121, vec![2, 0, 1]),
-        (5123, vec![2, 0, 0, 0, 1, 0]),
-        (5125, vec![2, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0]),
-    ] {
+    for (component, bytes) in
+        [(5121, vec![2, 0, 1]), (5123, vec![2, 0, 0, 0, 1, 0]), (5125, vec![2, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0])]
+    {
         let mut file = File::default();
         let positions = file.vectors(&CORNERS);
         let view = file.view(&bytes, "");
         let indices = file.accessor(format!(
             r#"{{ "bufferView": {view}, "componentType": {component}, "count": 3, "type": "SCALAR" }}"#
         ));
-        let scene =
-            primitive(&file, &format!(r#""attributes": {{ "POSITION": {positions} }}, "indices": {indices}"#));
+        let scene = primitive(&file, &format!(r#""attributes": {{ "POSITION": {positions} }}, "indices": {indices}"#));
         assert_eq!((scene.geometry.len(), bounds(&scene)), (1, UNIT), "{component}");
         let scene = primitive(&file, &format!(r#""attributes": {{ "POSITION": {positions} }}"#));
         assert_eq!((scene.geometry.len(), bounds(&scene)), (1, UNIT));
@@ -41,7 +38,8 @@ fn indices_of_every_type_and_none_give_the_same_triangle() {
 fn modes_make_triangles_and_keep_their_numbers() {
     let mut file = File::default();
     // The second triangle of the strip has no area.
-    let positions = file.vectors(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]]);
+    let positions =
+        file.vectors(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]]);
     let attributes = format!(r#""attributes": {{ "POSITION": {positions} }}"#);
     let numbers = |mode: u32| -> Vec<u32> {
         let scene = primitive(&file, &format!(r#"{attributes}, "mode": {mode}"#));
@@ -67,14 +65,12 @@ fn interleaved_normalised_and_sparse_accessors_are_read() {
         bytes.extend(uv.iter().flat_map(|v| v.to_le_bytes()));
     }
     let view = file.view(&bytes, r#", "byteStride": 16"#);
-    let positions = file.accessor(format!(
-        r#"{{ "bufferView": {view}, "componentType": 5126, "count": 3, "type": "VEC3" }}"#
-    ));
+    let positions =
+        file.accessor(format!(r#"{{ "bufferView": {view}, "componentType": 5126, "count": 3, "type": "VEC3" }}"#));
     let uvs = file.accessor(format!(
         r#"{{ "bufferView": {view}, "byteOffset": 12, "componentType": 5123, "normalized": true, "count": 3, "type": "VEC2" }}"#
     ));
-    let scene =
-        primitive(&file, &format!(r#""attributes": {{ "POSITION": {positions}, "TEXCOORD_0": {uvs} }}"#));
+    let scene = primitive(&file, &format!(r#""attributes": {{ "POSITION": {positions}, "TEXCOORD_0": {uvs} }}"#));
     assert_eq!(bounds(&scene), UNIT);
     let mut found = scene.geometry.attributes_of(0).and_then(|a| a.uvs).expect("texture coordinates");
     // Upwards, and in any order of corners.
@@ -140,9 +136,8 @@ fn a_skin_follows_its_joints_and_not_its_node() {
     let positions = file.vectors(&CORNERS);
     let weights = file.vectors(&[[1.0, 0.0, 0.0, 0.0], [0.5, 0.5, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]);
     let view = file.view(&[0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0], "");
-    let joints = file.accessor(format!(
-        r#"{{ "bufferView": {view}, "componentType": 5121, "count": 3, "type": "VEC4" }}"#
-    ));
+    let joints =
+        file.accessor(format!(r#"{{ "bufferView": {view}, "componentType": 5121, "count": 3, "type": "VEC4" }}"#));
     let scene = file.load(&format!(
         r#""meshes": [{{ "primitives": [{{ "attributes":
             {{ "POSITION": {positions}, "JOINTS_0": {joints}, "WEIGHTS_0": {weights} }} }}] }}],

@@ -133,7 +133,9 @@ fn buffers_lie_in_files_beside_and_nowhere_else() {
     };
     let read = |uri: &str| load(&folder.write("in/s.gltf", text(uri)), &LoadOptions::default());
     assert!(read("data%20dir/a.bin").is_ok() && read("data dir/../data dir/a.bin").is_ok());
-    for uri in ["../out.bin", "%2e%2e%2fout.bin", "/etc/passwd", "file:///etc/passwd", "http://a/b", "none.bin", "%FF", "data"] {
+    for uri in
+        ["../out.bin", "%2e%2e%2fout.bin", "/etc/passwd", "file:///etc/passwd", "http://a/b", "none.bin", "%FF", "data"]
+    {
         let error = read(uri).unwrap_err().to_string();
         assert!(error.contains("(/buffers/0)"), "{uri}: {error}");
     }

@@ -42,7 +42,10 @@ fn lights_stand_at_their_nodes() {
     ));
     let [lamp, sun, beam] = &scene.lights[..] else { panic!("three lights") };
     assert_eq!((lamp.name.as_deref(), lamp.color), (Some("lamp"), Vec3::new(4.0, 2.0, 1.0)));
-    assert_eq!((lamp.kind, lamp.falloff), (LightKind::Point { position: Vec3::new(1.0, 2.0, 3.0) }, Falloff::InverseSquare));
+    assert_eq!(
+        (lamp.kind, lamp.falloff),
+        (LightKind::Point { position: Vec3::new(1.0, 2.0, 3.0) }, Falloff::InverseSquare)
+    );
     let LightKind::Directional { direction } = sun.kind else { panic!("{sun:?}") };
     assert!(direction.abs_diff_eq(Vec3::NEG_Y, 1e-6), "{direction}");
     let LightKind::Spot { direction, cos_inner, cos_outer, .. } = beam.kind else { panic!("{beam:?}") };
@@ -84,7 +87,10 @@ fn lights_of_any_strength_give_the_same_picture() {
         assert!((100..250).contains(&usual[0]), "{kind}: {usual:?}");
         for intensity in [0.01, 1.0, 100_000.0] {
             let other = lit(intensity, kind);
-            assert!(other.iter().zip(usual).all(|(a, b)| a.abs_diff(b) <= 1), "{kind} {intensity}: {other:?} {usual:?}");
+            assert!(
+                other.iter().zip(usual).all(|(a, b)| a.abs_diff(b) <= 1),
+                "{kind} {intensity}: {other:?} {usual:?}"
+            );
         }
     }
 }

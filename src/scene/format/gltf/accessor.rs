@@ -130,7 +130,9 @@ impl<'d> Accessor<'d> {
             (ComponentType::F32, _) => strided.copy(elements, f32::from_le_bytes),
             (ComponentType::U8, true) => strided.copy(elements, |[b]| f32::from(b) / 255.0),
             (ComponentType::U8, false) => strided.copy(elements, |[b]| f32::from(b)),
-            (ComponentType::I8, true) => strided.copy(elements, |b| (f32::from(i8::from_le_bytes(b)) / 127.0).max(-1.0)),
+            (ComponentType::I8, true) => {
+                strided.copy(elements, |b| (f32::from(i8::from_le_bytes(b)) / 127.0).max(-1.0))
+            }
             (ComponentType::I8, false) => strided.copy(elements, |b| f32::from(i8::from_le_bytes(b))),
             (ComponentType::U16, true) => strided.copy(elements, |b| f32::from(u16::from_le_bytes(b)) / 65535.0),
             (ComponentType::U16, false) => strided.copy(elements, |b| f32::from(u16::from_le_bytes(b))),
@@ -160,7 +162,10 @@ impl<'d> Accessor<'d> {
         if let Which::These(places) = which
             && let Some(place) = places.iter().find(|place| **place as usize >= self.count)
         {
-            return Err(Fault::new(pointer.to_string(), format!("count is {}; a vertex has number {place}", self.count)));
+            return Err(Fault::new(
+                pointer.to_string(),
+                format!("count is {}; a vertex has number {place}", self.count),
+            ));
         }
         if let (Which::These(places), Some(dense), None) = (which, &self.dense, &self.sparse) {
             self.document.take_elements(places.len() as u64, pointer)?;

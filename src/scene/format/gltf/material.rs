@@ -23,11 +23,7 @@ const UNKNOWN_ROUGHNESS: f32 = 0.5;
 const LEAST_PASSED: f32 = 1e-6;
 
 /// The materials of a file, the default one last.
-pub fn materials(
-    document: &Document,
-    textures: &mut Textures,
-    report: &mut Report,
-) -> Read<Vec<MaterialDesc>> {
+pub fn materials(document: &Document, textures: &mut Textures, report: &mut Report) -> Read<Vec<MaterialDesc>> {
     let mut names = HashSet::new();
     let mut materials = Vec::with_capacity(document.root.materials.len() + 1);
     for (i, material) in document.root.materials.iter().enumerate() {
@@ -93,7 +89,8 @@ impl Reader<'_, '_> {
         }
         if let Some(occlusion) = &material.occlusion_texture {
             let transform = occlusion.extensions.as_ref().and_then(|extensions| transform(&extensions.others));
-            let reference = Reference { index: occlusion.index, set: occlusion.tex_coord, transform: transform.as_ref() };
+            let reference =
+                Reference { index: occlusion.index, set: occlusion.tex_coord, transform: transform.as_ref() };
             let lookup = self.lookup(Some(reference), "occlusionTexture")?;
             described.occlusion = lookup.map(|lookup| Scaled { lookup, scale: share(occlusion.strength.0) });
         }
@@ -104,9 +101,7 @@ impl Reader<'_, '_> {
             texture: self.lookup(material.emissive_texture.as_ref().map(Reference::of), "emissiveTexture")?,
         };
         described.alpha = match material.alpha_mode {
-            Checked::Valid(AlphaMode::Mask) => {
-                Alpha::Mask(finite(material.alpha_cutoff.unwrap_or_default().0, 0.5))
-            }
+            Checked::Valid(AlphaMode::Mask) => Alpha::Mask(finite(material.alpha_cutoff.unwrap_or_default().0, 0.5)),
             Checked::Valid(AlphaMode::Blend) => Alpha::Blend,
             Checked::Valid(AlphaMode::Opaque) | Checked::Invalid => Alpha::Opaque,
         };
@@ -119,7 +114,8 @@ impl Reader<'_, '_> {
             described.transparency = Vec3::splat(share(transmission.transmission_factor.0));
             described.fresnel = described.is_transparent();
             let texture = transmission.transmission_texture.as_ref().map(Reference::of);
-            described.transmission = self.lookup(texture, "extensions/KHR_materials_transmission/transmissionTexture")?;
+            described.transmission =
+                self.lookup(texture, "extensions/KHR_materials_transmission/transmissionTexture")?;
         }
         // Without a volume the surface is a thin wall.
         described.thin = true;

@@ -204,7 +204,10 @@ fn place_objects(
         let name = own.name.as_ref().or_else(|| mesh?.name.as_ref());
         for place in places {
             if !nodes::keeps_surfaces(place) {
-                report.warn(format!("/nodes/{node}"), "the node's scale is 0 along an axis; what it flattens is left out");
+                report.warn(
+                    format!("/nodes/{node}"),
+                    "the node's scale is 0 along an axis; what it flattens is left out",
+                );
                 continue;
             }
             for &job in own_jobs {

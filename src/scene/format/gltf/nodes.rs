@@ -27,7 +27,8 @@ impl Nodes {
             let i = node.value();
             if worlds[i].is_some() {
                 // Entering it again would never end in a circle, and double with every level of others.
-                report.warn(by.to_string(), format!("node {i} has another parent or lies within itself; left out here"));
+                report
+                    .warn(by.to_string(), format!("node {i} has another parent or lies within itself; left out here"));
                 continue;
             }
             if order.len() as u64 >= limits.nodes {
@@ -89,7 +90,8 @@ fn local(node: &Node, i: usize, report: &mut Report) -> Read<DAffine3> {
         Some(m) => {
             let m = m.map(f64::from);
             if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
-                report.warn(format!("/nodes/{i}/matrix"), "the matrix's last row is not 0, 0, 0, 1; taken as if it were");
+                report
+                    .warn(format!("/nodes/{i}/matrix"), "the matrix's last row is not 0, 0, 0, 1; taken as if it were");
             }
             let column = |at: usize| DVec3::new(m[at], m[at + 1], m[at + 2]);
             DAffine3::from_cols(column(0), column(4), column(8), column(12))

@@ -4,9 +4,7 @@
 //! target) and reads what is not shown.
 
 use gltf::json::extensions;
-use gltf::json::{
-    Accessor, Asset, Buffer, Camera, Image, Index, Material, Mesh, Node, Skin, Texture, buffer, texture,
-};
+use gltf::json::{Accessor, Asset, Buffer, Camera, Image, Index, Material, Mesh, Node, Skin, Texture, buffer, texture};
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::fmt;
@@ -64,7 +62,9 @@ pub struct Scene {
 }
 
 /// Reads a list of at most `MOST` entries.
-fn list<'de, const MOST: usize, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+fn list<'de, const MOST: usize, T: Deserialize<'de>, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Vec<T>, D::Error> {
     struct List<T, const MOST: usize>(PhantomData<T>);
     impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for List<T, MOST> {
         type Value = Vec<T>;

@@ -53,9 +53,8 @@ pub fn hold(
         else {
             break;
         };
-        let open = |index, name: &str| {
-            Accessor::open(document, index, format_args!("{pointer}/attributes/{name}_{set}"))
-        };
+        let open =
+            |index, name: &str| Accessor::open(document, index, format_args!("{pointer}/attributes/{name}_{set}"));
         let held_by = open(held_by, "JOINTS")?.integers::<4>(which)?;
         let weights = open(weights, "WEIGHTS")?.shares::<4>(which)?;
         for (((held_by, weights), sum), total) in held_by.iter().zip(&weights).zip(&mut sums).zip(&mut totals) {

@@ -166,7 +166,10 @@ impl Textures<'_> {
         }
         let (bytes, _) = self.document.view(view, format_args!("/images/{i}/bufferView"))?;
         self.bytes_left = self.bytes_left.checked_sub(bytes.len()).ok_or_else(|| {
-            Fault::new(format!("/images/{i}/bufferView"), "the images overlap: together they are larger than all buffers")
+            Fault::new(
+                format!("/images/{i}/bufferView"),
+                "the images overlap: together they are larger than all buffers",
+            )
         })?;
         let bytes: Arc<[u8]> = bytes.into();
         self.embedded.insert(view.value(), Arc::clone(&bytes));
