@@ -43,7 +43,9 @@ struct Place {
     view: Vec3,
     /// How far it is free.
     free: f32,
-    /// Mean of the logarithm of how far all of the picture is free.
+    /// Logarithm of that, and its mean over all of the picture, added up.
+    score: f64,
+    /// The greatest mean of any view from here.
     openness: f64,
 }
 
@@ -56,7 +58,7 @@ pub fn stand(probe: &mut Probe, bounds: Aabb) -> Option<Camera> {
     }
     let directions = Directions { looks: around(LOOKS), views: horizontal() };
     let mut best: Option<Place> = None;
-    let (mut with_floor, mut inside) = (0, 0);
+    let (mut with_floor, mut inside, mut openness) = (0, 0, f64::NEG_INFINITY);
     for place in 0..PLACES * PLACES {
         let share = |i: usize| (i as f32 + 0.5) / PLACES as f32;
         let [x, z] = [share(place % PLACES), share(place / PLACES)];
@@ -66,10 +68,11 @@ pub fn stand(probe: &mut Probe, bounds: Aabb) -> Option<Camera> {
             let above = bounds.min + bounds.size() * Vec3::new(x, storey, z);
             let floor = eye_above_floor(probe, above, bounds).filter(|(eye, _)| last.replace(*eye) != Some(*eye));
             let Some((eye, height)) = floor else { continue };
-            let place = directions.place(probe, eye, height);
-            is_inside |= place.is_some();
-            if place.as_ref().is_some_and(|own| best.as_ref().is_none_or(|best| own.openness > best.openness)) {
-                best = place;
+            let Some(place) = directions.place(probe, eye, height) else { continue };
+            is_inside = true;
+            openness = openness.max(place.openness);
+            if best.as_ref().is_none_or(|best| place.score > best.score) {
+                best = Some(place);
             }
         }
         with_floor += u32::from(last.is_some());
@@ -77,8 +80,8 @@ pub fn stand(probe: &mut Probe, bounds: Aabb) -> Option<Camera> {
     }
     let size = bounds.size().as_dvec3();
     let open = libm::log(OPEN * libm::hypot(size.x, size.z));
-    let best = best.filter(|best| inside as f32 >= INSIDE * with_floor as f32 && best.openness >= open);
-    let Place { eye, view, free, .. } = best?;
+    let is_interior = inside as f32 >= INSIDE * with_floor as f32 && openness >= open;
+    let Place { eye, view, free, .. } = best.filter(|_| is_interior)?;
     let camera = Camera { eye, look_at: eye + view * free.max(eye.abs().max_element() * 1e-3), ..Camera::default() };
     camera.is_valid().then_some(camera)
 }
@@ -117,14 +120,16 @@ impl Directions {
         level as f32 >= LEVEL * points.len() as f32
     }
 
-    /// The view that is free the farthest, over all of the picture: a gap between two pillars is none.
+    /// The view that is free the farthest, ahead and over all of the picture: a gap between two pillars is none.
     fn widest(&self, eye: Vec3, free: &[f32]) -> Option<Place> {
-        let openness = |middle: usize| {
-            let picture = (0..=2 * SIDES).map(|side| free[(middle + VIEWS + side - SIDES) % VIEWS]);
-            picture.map(|free| libm::log(f64::from(free.max(f32::MIN_POSITIVE)))).sum::<f64>() / (2 * SIDES + 1) as f64
+        let far = |i: usize| libm::log(f64::from(free[i].max(f32::MIN_POSITIVE)));
+        let mean = |middle: usize| {
+            let picture = (0..=2 * SIDES).map(|side| far((middle + VIEWS + side - SIDES) % VIEWS));
+            picture.sum::<f64>() / (2 * SIDES + 1) as f64
         };
-        let places = (0..VIEWS).map(|i| Place { eye, view: self.views[i], free: free[i], openness: openness(i) });
-        places.max_by(|a, b| a.openness.total_cmp(&b.openness))
+        let openness = (0..VIEWS).map(mean).max_by(f64::total_cmp)?;
+        let place = |i: usize| Place { eye, view: self.views[i], free: free[i], score: far(i) + mean(i), openness };
+        (0..VIEWS).map(place).max_by(|a, b| a.score.total_cmp(&b.score))
     }
 }
 

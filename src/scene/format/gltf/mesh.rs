@@ -3,9 +3,11 @@
 use super::accessor::{Accessor, Which};
 use super::document::Document;
 use super::fault::{Fault, Read};
-use super::{skin, tangents, topology};
+use super::nodes::Nodes;
+use super::skin::{self, Holder};
+use super::{tangents, topology};
 use crate::scene::desc::MeshDesc;
-use glam::{DAffine3, DVec2, DVec3, Vec2, Vec4};
+use glam::{DVec2, DVec3, Vec2, Vec4};
 use gltf::json::mesh::{MorphTarget, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
@@ -22,7 +24,7 @@ pub struct Job<'a> {
     /// How far the mesh is morphed towards each of its targets.
     pub weights: &'a [f32],
     /// What holds it, if it has a skin.
-    pub joints: Option<Vec<DAffine3>>,
+    pub held_by: Option<Holder>,
     /// Whether its material looks up second texture coordinates.
     pub second_coordinates: bool,
     /// Which coordinates its material looks up a normal map by, if it has one.
@@ -39,7 +41,7 @@ pub struct Drawn {
 
 impl Job<'_> {
     /// Reads the primitive; the error side of the inner result says why there is nothing to draw.
-    pub fn read(&self, document: &Document) -> Read<Result<Drawn, String>> {
+    pub fn read(&self, document: &Document, nodes: &Nodes) -> Read<Result<Drawn, String>> {
         let mut notes = Vec::new();
         let Checked::Valid(mode) = self.primitive.mode else {
             return Err(Fault::new(format!("{}/mode", self.pointer), "unknown mode; expected 0 to 6"));
@@ -94,8 +96,8 @@ impl Job<'_> {
                 None => {}
             }
         }
-        if let Some(joints) = &self.joints {
-            skin::hold(document, self.primitive, &self.pointer, which, joints, &mut mesh)?;
+        if let Some(holder) = self.held_by {
+            skin::hold(document, self.primitive, &self.pointer, which, holder, nodes, &mut mesh)?;
         }
         notes.extend(replace_odd_normals(&mut mesh));
         Ok(Ok(Drawn { mesh, notes }))

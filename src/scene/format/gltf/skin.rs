@@ -10,31 +10,6 @@ use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Node, Skin};
 
-/// Where each joint of a skin takes the mesh at rest: from the mesh's own space to the world. The place of the mesh's own
-/// node does not count.
-pub fn joint_matrices(document: &Document, nodes: &Nodes, skin: Index<Skin>, node: usize) -> Read<Vec<DAffine3>> {
-    let i = skin.value();
-    let skin = get(&document.root.skins, skin, "skin", format_args!("/nodes/{node}/skin"))?;
-    let mut binds = Vec::new();
-    if let Some(index) = skin.inverse_bind_matrices {
-        let accessor = Accessor::open(document, index, format_args!("/skins/{i}/inverseBindMatrices"))?;
-        binds = accessor.vectors::<16>(Which::All)?;
-    }
-    let joint = |(place, &joint): (usize, &Index<Node>)| {
-        get(&document.root.nodes, joint, "node", format_args!("/skins/{i}/joints/{place}"))?;
-        // A joint outside of the scene has no place in the world: it leaves the mesh as it was bound.
-        let Some(world) = nodes.worlds[joint.value()] else { return Ok(DAffine3::IDENTITY) };
-        Ok(match binds.get(place) {
-            None => world,
-            Some(m) => {
-                let column = |at: usize| DVec3::new(m[at].into(), m[at + 1].into(), m[at + 2].into());
-                world * DAffine3::from_cols(column(0), column(4), column(8), column(12))
-            }
-        })
-    };
-    skin.joints.iter().enumerate().map(joint).collect()
-}
-
 /// Moves a mesh to where joints hold it. `which` of the primitive's vertices the mesh has. What no joint holds is left where
 /// it is.
 pub fn hold(
@@ -42,9 +17,11 @@ pub fn hold(
     primitive: &Primitive,
     pointer: &str,
     which: Which,
-    joints: &[DAffine3],
+    holder: Holder,
+    nodes: &Nodes,
     mesh: &mut MeshDesc,
 ) -> Read<()> {
+    let joints = joint_matrices(document, nodes, holder)?;
     let mut sums = vec![DAffine3::ZERO; mesh.vertices.len()];
     let mut totals = vec![0.0; mesh.vertices.len()];
     for set in 0.. {
@@ -82,4 +59,39 @@ pub fn hold(
         }
     }
     Ok(())
+}
+
+/// What holds the mesh of a node.
+#[derive(Clone, Copy)]
+pub struct Holder {
+    /// The skin.
+    pub skin: Index<Skin>,
+    /// The node that names it.
+    pub node: usize,
+}
+
+/// Where each joint of a skin takes the mesh at rest: from the mesh's own space to the world. The place of the mesh's own
+/// node does not count.
+fn joint_matrices(document: &Document, nodes: &Nodes, Holder { skin, node }: Holder) -> Read<Vec<DAffine3>> {
+    let i = skin.value();
+    let skin = get(&document.root.skins, skin, "skin", format_args!("/nodes/{node}/skin"))?;
+    document.take_elements(skin.joints.len() as u64, format_args!("/skins/{i}/joints"))?;
+    let mut binds = Vec::new();
+    if let Some(index) = skin.inverse_bind_matrices {
+        let accessor = Accessor::open(document, index, format_args!("/skins/{i}/inverseBindMatrices"))?;
+        binds = accessor.vectors::<16>(Which::All)?;
+    }
+    let joint = |(place, &joint): (usize, &Index<Node>)| {
+        get(&document.root.nodes, joint, "node", format_args!("/skins/{i}/joints/{place}"))?;
+        // A joint outside of the scene has no place in the world: it leaves the mesh as it was bound.
+        let Some(world) = nodes.worlds[joint.value()] else { return Ok(DAffine3::IDENTITY) };
+        Ok(match binds.get(place) {
+            None => world,
+            Some(m) => {
+                let column = |at: usize| DVec3::new(m[at].into(), m[at + 1].into(), m[at + 2].into());
+                world * DAffine3::from_cols(column(0), column(4), column(8), column(12))
+            }
+        })
+    };
+    skin.joints.iter().enumerate().map(joint).collect()
 }
