@@ -11,7 +11,8 @@ use std::path::Path;
 /// Neither a multiple of a tile nor of a packet.
 const SIZE: (u32, u32) = (97, 66);
 
-fn wrong_pixels(name: &str, scene: &Scene, cameras: &[Camera]) -> Vec<String> {
+/// What differs between the ways that promise the same pixels.
+pub fn wrong_pixels(name: &str, scene: &Scene, cameras: &[Camera]) -> Vec<String> {
     let mut wrong = Vec::new();
     for (number, camera) in cameras.iter().enumerate() {
         let expected = PictureBits::of(&render(scene, camera, &Settings::exact(), SIZE));

@@ -27,6 +27,7 @@ mod scene_files;
 mod scene_loading;
 mod stress;
 mod subsampling;
+mod surfaces;
 mod temporary;
 #[path = "../common/tracer/mod.rs"]
 mod tracer;
