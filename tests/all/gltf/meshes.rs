@@ -148,3 +148,20 @@ fn a_skin_follows_its_joints_and_not_its_node() {
     assert_eq!(bounds(&scene), [Vec3::new(0.0, 0.0, 5.0), Vec3::new(2.0, 1.0, 5.0)]);
     assert_eq!(warnings(&scene), ["/nodes/0/skin: the skin is shown at rest"]);
 }
+
+#[test]
+fn primitives_that_share_many_vertices_keep_their_own() {
+    let mut file = File::default();
+    let corner = |i: usize| [i as f32, (i * i) as f32, 0.0];
+    let positions = file.vectors(&(0..100).map(corner).collect::<Vec<_>>());
+    let indices = file.indices(&[97, 3, 40]);
+    let keys = format!(r#""attributes": {{ "POSITION": {positions} }}, "indices": {indices}"#);
+    let scene = primitive(&file, &keys);
+    assert_eq!(bounds(&scene), [Vec3::new(3.0, 9.0, 0.0), Vec3::new(97.0, 9409.0, 0.0)]);
+    // The limit counts the vertices used, not those there are.
+    let mut options = raywalk::scene::LoadOptions::default();
+    options.limits.set("vertices", "6").expect("a known limit");
+    let folder = crate::temporary::Folder::new();
+    let text = file.text(&format!(r#""nodes": [{{ "mesh": 0 }}], "meshes": [{{ "primitives": [{{ {keys} }}] }}]"#));
+    assert!(raywalk::scene::load(&folder.write("s.gltf", text), &options).is_ok());
+}
