@@ -92,6 +92,18 @@ pub enum ToneMap {
     Neutral,
 }
 
+/// How many stops brighter the 8-bit picture is than the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exposure {
+    /// As the scene says: as for `Auto` where its lights are in physical units, else none.
+    Scene,
+    /// What makes the surfaces in the scene's first view neither dark nor blinding, whatever its lights; the same for
+    /// every frame.
+    Auto,
+    /// So many.
+    Stops(f32),
+}
+
 /// How the window shows a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Present {
@@ -138,10 +150,10 @@ pub struct Settings {
     pub depth: Option<u32>,
     /// Secondary rays whose largest weight is below this are not traced.
     pub min_weight: f32,
-    /// Tone curve of the 8-bit picture.
-    pub tone_map: ToneMap,
-    /// Exposure in stops, applied before the tone curve.
-    pub exposure: f32,
+    /// Tone curve of the 8-bit picture; `None` is the scene's own.
+    pub tone_map: Option<ToneMap>,
+    /// Exposure, applied before the tone curve.
+    pub exposure: Exposure,
     /// The window goes on to 16 rays a pixel when motion stops; nothing else looks at it.
     pub refine_at_rest: bool,
     /// Frames a second for which the window gives up quality while moving; nothing else looks at it.
@@ -176,8 +188,8 @@ impl Settings {
             refractions: true,
             depth: None,
             min_weight: 0.0,
-            tone_map: ToneMap::None,
-            exposure: 0.0,
+            tone_map: None,
+            exposure: Exposure::Scene,
             refine_at_rest: false,
             target_fps: None,
             present: Present::Auto,
@@ -459,8 +471,8 @@ pub const ROWS: &[Row] = &[
         Approximate,
         [1.0 / 512.0, 1.0 / 64.0, 1.0 / 16.0]
     ),
-    choice_row!("tone-map", "curve between linear light and the 8-bit picture: none clamps, neutral is Khronos PBR Neutral",
-        tone_map, ["none" => ToneMap::None, same; "neutral" => ToneMap::Neutral, different]),
+    choice_row!("tone-map", "curve between linear light and the 8-bit picture: none clamps, neutral is Khronos PBR Neutral, scene is neutral for glTF and none else",
+        tone_map, ["scene" => None, same; "none" => Some(ToneMap::None), different; "neutral" => Some(ToneMap::Neutral), different]),
     number_row!(
         "render-scale",
         "edge of the traced picture as a share of the whole, which it is enlarged to (at rest it is 1)",
@@ -470,7 +482,26 @@ pub const ROWS: &[Row] = &[
         Approximate,
         [0.85, 0.7, 0.6, 0.5, 0.35, 0.25]
     ),
-    number_row!("exposure", "stops of exposure before the tone curve", exposure, -20.0, 20.0, Different, []),
+    Row {
+        name: "exposure",
+        help: "stops of exposure before the tone curve; auto finds them from the scene, the same for every frame (default: auto for glTF, else 0)",
+        kind: Kind::Number { min: -20.0, max: 20.0, integer: false, promise: Promise::Different, tries: &[] },
+        get: |s| match s.exposure {
+            Exposure::Scene => "scene".to_owned(),
+            Exposure::Auto => "auto".to_owned(),
+            Exposure::Stops(stops) => stops.to_string(),
+        },
+        set: |s, text| {
+            s.exposure = match text {
+                "scene" => Exposure::Scene,
+                "auto" => Exposure::Auto,
+                _ => {
+                    Exposure::Stops(number(text, -20.0, 20.0).map_err(|message| format!("{message}, or auto"))? as f32)
+                }
+            };
+            Ok(())
+        },
+    },
     switch_row!(
         "refine-at-rest",
         "when motion stops, the window gathers samples up to the picture of supersample 16, then rests; on by default in the window, without effect elsewhere",

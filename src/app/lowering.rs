@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn a_lowered_frame_keeps_its_mode() {
         let chosen = Settings {
-            tone_map: ToneMap::Neutral,
+            tone_map: Some(ToneMap::Neutral),
             shadows: false,
             depth: Some(2),
             threads: 3,

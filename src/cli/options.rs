@@ -131,7 +131,7 @@ pub fn check_size(Size { width, height }: Size, limits: &Limits) -> Result<(), S
 mod tests {
     use super::super::command;
     use super::*;
-    use raywalk::settings::Fill;
+    use raywalk::settings::{Exposure, Fill};
 
     fn options(line: &[&str]) -> Result<Options, Failure> {
         let asked = command().try_get_matches_from(line).expect("it can be typed");
@@ -152,7 +152,7 @@ mod tests {
         let line = ["raywalk", "render", "--eye", "-7,10,-10", "--threads", "-1", "--exposure", "-0.5"];
         let options = options(&line).expect("right");
         assert_eq!(options.view.eye, Some(Vec3::new(-7.0, 10.0, -10.0)));
-        assert_eq!((options.settings.threads, options.settings.exposure), (-1, -0.5));
+        assert_eq!((options.settings.threads, options.settings.exposure), (-1, Exposure::Stops(-0.5)));
     }
 
     #[test]

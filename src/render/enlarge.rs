@@ -66,7 +66,8 @@ pub(super) fn render_scaled(
     stats.pixels.interpolated += u64::from(film.width()) * u64::from(film.height()) - traced;
 
     let start = Instant::now();
-    let (token, encoder) = (SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best), Encoder::new(&settings));
+    let (token, encoder) =
+        (SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best), Encoder::new(scene, &settings));
     let (whole, cancel) = ([film.width(), film.height()], scratch.cancel.clone());
     if let Some(pool) = &mut scratch.pool {
         pool.for_each_tile(&cancel, &mut film.tiles, |tile, worker| {

@@ -247,7 +247,7 @@ pub fn render_frame(
         keeps_seen: film.planes().any() || plan.trails || settings.supersample == Supersample::Adaptive,
         keeps_planes: film.planes().any(),
         keeps_normals: film.planes().normal || plan.trails,
-        encoder: Encoder::new(settings),
+        encoder: Encoder::new(scene, settings),
         progress: film.progress,
     };
 

@@ -2,6 +2,7 @@
 
 use super::queue::MOST_LANES;
 use crate::math::V3;
+use crate::scene::Scene;
 use crate::settings::{Settings, ToneMap};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -17,9 +18,13 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// The encoder that the settings ask for.
-    pub fn new(settings: &Settings) -> Self {
-        Self { table: &SRGB, gain: libm::exp2f(settings.exposure), tone_map: settings.tone_map }
+    /// The encoder that the settings ask for, what they leave to the scene filled in.
+    pub fn new(scene: &Scene, settings: &Settings) -> Self {
+        Self::with(scene.stops(settings.exposure), settings.tone_map.unwrap_or(scene.render.tone_map))
+    }
+
+    fn with(stops: f32, tone_map: ToneMap) -> Self {
+        Self { table: &SRGB, gain: libm::exp2f(stops), tone_map }
     }
 
     /// Encodes linear colours as RGBA.
@@ -154,16 +159,16 @@ mod tests {
     use super::*;
     use crate::math::{SimdToken, dispatch};
 
-    fn encode_lanes<S: Simd>(simd: S, settings: &Settings, color: [f32; 3]) -> [u8; 4] {
-        Encoder::new(settings).encode(simd, V3::splat(simd, color.into()))[S::f32s::LEN - 1]
+    fn encode_lanes<S: Simd>(simd: S, tone_map: ToneMap, color: [f32; 3]) -> [u8; 4] {
+        Encoder::with(0.0, tone_map).encode(simd, V3::splat(simd, color.into()))[S::f32s::LEN - 1]
     }
 
-    fn encode(settings: &Settings, color: [f32; 3]) -> [u8; 4] {
-        dispatch!(SimdToken::best(), simd => encode_lanes(simd, settings, color))
+    fn encode(tone_map: ToneMap, color: [f32; 3]) -> [u8; 4] {
+        dispatch!(SimdToken::best(), simd => encode_lanes(simd, tone_map, color))
     }
 
     fn byte(linear: f32) -> u8 {
-        encode(&Settings::default(), [linear; 3])[1]
+        encode(ToneMap::None, [linear; 3])[1]
     }
 
     #[test]
@@ -190,10 +195,9 @@ mod tests {
 
     #[test]
     fn neutral_keeps_base_colours_and_compresses_highlights() {
-        let settings = Settings { tone_map: ToneMap::Neutral, ..Settings::default() };
-        let base = encode(&settings, [0.5, 0.3, 0.2]);
-        assert_eq!(base, encode(&Settings::default(), [0.46, 0.26, 0.16]));
-        let bright = encode(&settings, [20.0, 10.0, 5.0]);
+        let base = encode(ToneMap::Neutral, [0.5, 0.3, 0.2]);
+        assert_eq!(base, encode(ToneMap::None, [0.46, 0.26, 0.16]));
+        let bright = encode(ToneMap::Neutral, [20.0, 10.0, 5.0]);
         assert!(bright[0] > 240, "{bright:?}");
     }
 }

@@ -13,8 +13,10 @@ pub struct Limits {
     pub objects: u64,
     /// Primitives: triangles, spheres and the like.
     pub primitives: u64,
-    /// Groups, models and lights of models, each as often as it is placed.
+    /// Nodes of a model's tree, and groups, models and their lights, each as often as it is placed.
     pub nodes: u64,
+    /// Vertices and indices read from all meshes together.
+    pub vertices: u64,
     /// Levels of objects and lists within each other in a scene file, and of groups and models in the scene.
     pub nesting: u64,
     /// Width and height of the picture that a scene may ask for.
@@ -70,10 +72,17 @@ const ROWS: &[Row] = &[
     },
     Row {
         name: "nodes",
-        help: "groups, models and lights of models as often as placed",
+        help: "nodes, groups, models and lights of models, as often as placed",
         default: 1_000_000,
         ceiling: u32::MAX as u64 - 1,
         field: |l| &mut l.nodes,
+    },
+    Row {
+        name: "vertices",
+        help: "vertices and indices read from meshes",
+        default: 1 << 26,
+        ceiling: u32::MAX as u64 - 1,
+        field: |l| &mut l.vertices,
     },
     Row { name: "nesting", help: "levels of nesting", default: 128, ceiling: 256, field: |l| &mut l.nesting },
     Row {
@@ -94,6 +103,7 @@ impl Default for Limits {
             objects: 0,
             primitives: 0,
             nodes: 0,
+            vertices: 0,
             nesting: 0,
             picture_edge: 0,
         };

@@ -32,6 +32,7 @@ pub use path::CameraPath;
 pub use texture::Texture;
 
 use crate::geometry::{Aabb, Geometry};
+use crate::settings::{Exposure, ToneMap};
 use glam::Vec3;
 
 /// A camera that the scene file names.
@@ -56,11 +57,23 @@ pub struct RenderDefaults {
     pub background: Vec3,
     /// Linear ambient light, multiplied by each material's `ambient`.
     pub ambient: Vec3,
+    /// How its light is exposed.
+    pub exposure: Exposure,
+    /// Tone curve of its 8-bit pictures.
+    pub tone_map: ToneMap,
 }
 
 impl Default for RenderDefaults {
     fn default() -> Self {
-        Self { width: None, height: None, max_depth: 5, background: Vec3::ZERO, ambient: Vec3::ONE }
+        Self {
+            width: None,
+            height: None,
+            max_depth: 5,
+            background: Vec3::ZERO,
+            ambient: Vec3::ONE,
+            exposure: Exposure::Stops(0.0),
+            tone_map: ToneMap::None,
+        }
     }
 }
 
@@ -91,6 +104,8 @@ pub struct Scene {
     pub cameras: Vec<NamedCamera>,
     /// What the file asks of the picture.
     pub render: RenderDefaults,
+    /// Stops of automatic exposure.
+    pub auto_exposure: f32,
     /// What was odd about the file, already worded for people.
     pub warnings: Vec<Warning>,
 }
@@ -99,5 +114,17 @@ impl Scene {
     /// The bounds of all finite objects; empty when there is none. Planes are not finite.
     pub fn bounds(&self) -> Aabb {
         build::finite_bounds(&self.objects)
+    }
+
+    /// The stops that `exposure` means for this scene.
+    pub fn stops(&self, exposure: Exposure) -> f32 {
+        match exposure {
+            Exposure::Stops(stops) => stops,
+            Exposure::Auto => self.auto_exposure,
+            Exposure::Scene => match self.render.exposure {
+                Exposure::Stops(stops) => stops,
+                Exposure::Auto | Exposure::Scene => self.auto_exposure,
+            },
+        }
     }
 }

@@ -36,7 +36,7 @@ fn distance(a: &Film, b: &Film) -> f64 {
 fn all_settings() -> Vec<Settings> {
     let mut all: Vec<Settings> = PRESETS.iter().map(|preset| (preset.settings)()).collect();
     all.push(Settings { visibility: Visibility::Full, ..Settings::exact() });
-    all.push(Settings { visibility: Visibility::Subsample, tone_map: ToneMap::Neutral, ..Settings::exact() });
+    all.push(Settings { visibility: Visibility::Subsample, tone_map: Some(ToneMap::Neutral), ..Settings::exact() });
     all
 }
 

@@ -12,6 +12,7 @@ mod flat_mirrors;
 #[path = "../common/flips.rs"]
 mod flips;
 mod formats;
+mod gltf;
 mod imports;
 mod interpolation;
 mod our_scenes;

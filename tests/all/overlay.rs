@@ -29,6 +29,7 @@ fn scene() -> Scene {
         headlight: true,
         cameras: vec![named("default"), named("door")],
         render: RenderDefaults::default(),
+        auto_exposure: 0.0,
         warnings: Vec::new(),
     }
 }

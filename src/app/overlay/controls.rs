@@ -52,7 +52,7 @@ fn control(ui: &mut Ui, row: &Row, value: &str, view: &View<'_>) -> (Response, O
             (response, wanted)
         }
         Kind::Choice(choices) => choice(ui, row, choices, value, view.settings),
-        &Kind::Number { min, max, integer, .. } => number(ui, value, min, max, integer, view),
+        &Kind::Number { min, max, integer, .. } => number(ui, row, value, [min, max], integer, view),
     }
 }
 
@@ -74,9 +74,17 @@ fn choice(ui: &mut Ui, row: &Row, choices: &[Choice], value: &str, settings: &Se
     (shown.response, wanted)
 }
 
-fn number(ui: &mut Ui, value: &str, min: f64, max: f64, integer: bool, view: &View<'_>) -> (Response, Option<String>) {
-    let before = match value {
-        "off" => min,
+fn number(
+    ui: &mut Ui,
+    row: &Row,
+    value: &str,
+    [min, max]: [f64; 2],
+    integer: bool,
+    view: &View<'_>,
+) -> (Response, Option<String>) {
+    let before = match (row.name, value) {
+        (_, "off") => min,
+        ("exposure", _) => f64::from(view.scene.stops(view.settings.exposure)),
         // Else the one value that is no number is the depth "scene".
         _ => value.parse().unwrap_or_else(|_| f64::from(view.scene.render.max_depth)),
     };

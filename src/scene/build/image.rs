@@ -167,7 +167,7 @@ impl ImageStore {
             Err(error) => format!("cannot read image \"{shown}\": {error}"),
             Ok(key) => match &self.decoded[&key] {
                 Ok(texels) => return Ok(Arc::clone(texels)),
-                Err(error) => format!("cannot decode image \"{shown}\" (PNG, JPEG and BMP are known): {error}"),
+                Err(error) => format!("cannot decode image \"{shown}\" (PNG, JPEG, BMP and WebP are known): {error}"),
             },
         };
         if !image.optional {

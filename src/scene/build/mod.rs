@@ -1,14 +1,17 @@
 //! From what a file says to what is traced: names resolved, transforms applied, textures decoded.
 
 mod bounds;
+mod brightness;
 mod framing;
 mod holes;
 mod image;
+mod interior;
 mod mapping;
 mod model;
 mod object;
 mod parts;
 mod placement;
+mod probe;
 
 pub use bounds::finite_bounds;
 
@@ -18,23 +21,31 @@ use super::desc::{ImageDesc, MaterialDesc, NameRef, SceneDesc, TextureDesc, Text
 use super::error::Warning;
 use super::files::{FileError, Files};
 use super::limits::Limits;
-use super::material::Encoding;
+use super::material::{Encoding, Model};
 use super::texture::ImageTexture;
 use super::{Light, Material, NamedCamera, Object, RenderDefaults, Scene, Texture};
 use crate::geometry::{Geometry, Part};
+use crate::settings::Exposure;
 use glam::Vec3;
 use holes::HoleMaps;
 use image::ImageStore;
 use model::{Contents, Models};
 use placement::Placement;
+use probe::Probe;
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Ambient light of a scene that has no lights.
-const HEADLIGHT_AMBIENT: Vec3 = Vec3::splat(0.1);
+/// Ambient light of a scene that has no lights: a share of the headlight's. Also that of a scene that is exposed
+/// automatically, as a share of what its lights usually give.
+const AMBIENT_SHARE: f32 = 0.1;
+/// How bright white is by automatic exposure in usual light, before the tone curve.
+const WHITE: f64 = 0.5;
+/// Greatest exposure in either direction, as the setting allows it.
+const MOST_STOPS: f64 = 20.0;
 
 /// Warnings kept of all files together, each of which has a limit of its own.
 const MOST_WARNINGS: usize = 1000;
@@ -183,20 +194,22 @@ impl SceneBuilder {
         static GENERATION: AtomicU64 = AtomicU64::new(0);
         let headlight = self.lights.is_empty();
         if headlight {
-            self.render.ambient = HEADLIGHT_AMBIENT;
+            self.render.ambient = Vec3::splat(AMBIENT_SHARE);
         }
         if self.materials.is_empty() {
             self.materials.push(Material::default_phong());
         }
+        self.models.forget();
+        let start = Instant::now();
+        let mut geometry = Geometry::build(std::mem::take(&mut self.parts));
+        geometry.hole_maps = std::mem::take(&mut self.holes.maps);
+        let build_ms = start.elapsed().as_secs_f64() * 1e3;
+        let mut probe = Probe::new(&geometry);
         if self.cameras.is_empty() {
-            let camera = framing::frame(finite_bounds(&self.objects), &self.render);
+            let camera = framing::start(&mut probe, finite_bounds(&self.objects), &self.render);
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
         }
-        drop(self.models);
-        let start = Instant::now();
-        let mut geometry = Geometry::build(self.parts);
-        geometry.hole_maps = self.holes.maps;
-        let build_ms = start.elapsed().as_secs_f64() * 1e3;
+        let auto_exposure = self.expose(&mut probe);
         Scene {
             name: self.name,
             format: self.format,
@@ -210,8 +223,33 @@ impl SceneBuilder {
             headlight,
             cameras: self.cameras,
             render: self.render,
+            auto_exposure,
             warnings: self.warnings,
         }
+    }
+
+    /// The stops that show white at half of full brightness where the scene is as bright as usual.
+    ///
+    /// Where the scene asks to be exposed so, its lights may be in any unit: what is as bright whatever the lights (its
+    /// ambient light, what glows, what takes no light) is put in proportion to them.
+    fn expose(&mut self, probe: &mut Probe) -> f32 {
+        let irradiance = brightness::usual_irradiance(probe, &self.cameras[0].camera, &self.lights).unwrap_or(1.0);
+        let physical = self.materials.iter().any(|m| matches!(m.model, Model::MetallicRoughness { .. }));
+        let white = if physical { irradiance / PI } else { irradiance };
+        let stops = libm::log2(WHITE / white).clamp(-MOST_STOPS, MOST_STOPS);
+        if self.render.exposure == Exposure::Auto {
+            if !self.lights.is_empty() {
+                self.render.ambient = Vec3::splat(AMBIENT_SHARE * irradiance as f32);
+            }
+            let full = libm::exp2(-stops) as f32;
+            for material in &mut self.materials {
+                material.emission.factor = (material.emission.factor * full.max(1.0)).min(Vec3::splat(f32::MAX));
+                if material.unlit {
+                    material.color.factor *= full;
+                }
+            }
+        }
+        stops as f32
     }
 }
 

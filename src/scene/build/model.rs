@@ -79,6 +79,11 @@ impl Models {
         models
     }
 
+    /// Gives back the memory of what was read.
+    pub fn forget(&mut self) {
+        self.files = Vec::new();
+    }
+
     /// Whether it is a model that is being read, and not the scene itself.
     pub fn is_reading(&self) -> bool {
         self.open != SCENE

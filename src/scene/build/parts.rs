@@ -56,8 +56,8 @@ impl<'a> ObjectParts<'a> {
                 format!("primitives: {}", exceeded("primitives", self.limits.primitives)),
             ));
         }
-        self.parts.reserve(count);
-        Ok(())
+        let no_memory = |_| Problem::new(self.at, format!("there is no memory for {count} more primitives"));
+        self.parts.try_reserve(count).map_err(no_memory)
     }
 
     /// Adds a shape.

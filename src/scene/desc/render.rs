@@ -21,6 +21,7 @@ pub fn read<'t>(node: impl Node<'t>, context: &mut Context) -> Outcome<RenderDef
         max_depth: map.or("max_depth", defaults.max_depth, integer_in(1..=MAX_DEPTH))?,
         background: map.or("background", defaults.background, color)?,
         ambient: map.or("ambient", defaults.ambient, color)?,
+        ..defaults
     };
     map.finish(&mut context.warnings);
     Ok(render)

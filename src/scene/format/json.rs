@@ -30,6 +30,21 @@ pub fn read(input: &Input, builder: &mut SceneBuilder) -> Result<(), SceneError>
     settle(described, context.warnings, builder, |positions| document.places(positions))
 }
 
+/// Reads a text whose structure serde knows, for the format of that name; errors have their line, column and pointer.
+pub(super) fn parse_as<T: DeserializeOwned>(
+    format: &str,
+    file: &Path,
+    bytes: &[u8],
+    nesting: u64,
+) -> Result<T, SceneError> {
+    let document = Document::parse(file, bytes, nesting)?;
+    serde_json::from_str(document.text).map_err(|error| {
+        let at = byte_offset(document.text.as_bytes(), error.line(), error.column());
+        let place = document.places(&[At(at)]).remove(0);
+        SceneError::Invalid { place, message: format!("not valid {format}: {}", without_position(&error)) }
+    })
+}
+
 /// A text of valid JSON syntax.
 struct Document<'t> {
     file: &'t Path,

@@ -1,5 +1,6 @@
 //! Scene files by format: one row a format, one reader a row.
 
+mod gltf;
 mod json;
 mod nff;
 mod obj;
@@ -49,6 +50,7 @@ pub const FORMATS: &[Format] = &[
     Format { name: "XML", extensions: &["xml"], read: xml::read },
     Format { name: "NFF", extensions: &["nff"], read: nff::read },
     Format { name: "OBJ", extensions: &["obj", "obj.zst"], read: obj::read },
+    Format { name: "glTF", extensions: &["gltf", "glb"], read: gltf::read },
 ];
 
 /// Loads a scene from a file; its format is known by its extension.

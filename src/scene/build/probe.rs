@@ -1,0 +1,119 @@
+//! Rays into a scene that was just built, to find out what there is to see and how bright it is.
+
+use crate::geometry::{ClosestHit, Geometry, NO_PRIMITIVE, Packet, PrimitiveIndex, PrimitiveKind, Search, Stack};
+use crate::math::{SimdToken, V3, dispatch};
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+use glam::Vec3;
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    /// How far away.
+    pub distance: f32,
+    /// Unit geometric normal, on the outer side of what has one; against the ray where the primitive is not flat.
+    pub normal: Vec3,
+}
+
+/// A way to ask for closest hits. The answers are the same at every SIMD level.
+pub struct Probe<'a> {
+    geometry: &'a Geometry,
+    stack: Stack,
+}
+
+impl<'a> Probe<'a> {
+    /// A probe of `geometry`.
+    pub fn new(geometry: &'a Geometry) -> Self {
+        Self { geometry, stack: Stack::default() }
+    }
+
+    /// What rays from `origin` meet, farther away than `t_min`.
+    pub fn look(&mut self, origin: Vec3, directions: &[Vec3], t_min: f32) -> Vec<Option<Met>> {
+        let hits = dispatch!(SimdToken::best(), simd => self.trace(simd, origin, directions, t_min));
+        let met = |(&(distance, primitive), &direction): (&(f32, PrimitiveIndex), &Vec3)| {
+            let normal = (primitive != NO_PRIMITIVE).then(|| self.normal(primitive).unwrap_or(-direction))?;
+            Some(Met { distance, normal })
+        };
+        hits.iter().zip(directions).map(met).collect()
+    }
+
+    /// What one ray meets.
+    pub fn look_along(&mut self, origin: Vec3, direction: Vec3, t_min: f32) -> Option<Met> {
+        self.look(origin, &[direction], t_min)[0]
+    }
+
+    fn trace<S: Simd>(&mut self, simd: S, origin: Vec3, directions: &[Vec3], t_min: f32) -> Vec<(f32, PrimitiveIndex)> {
+        let search = Search::new(self.geometry, true);
+        let mut hits = Vec::with_capacity(directions.len());
+        for own in directions.chunks(S::f32s::LEN) {
+            simd.vectorize(
+                #[inline(always)]
+                || {
+                    // Lanes to spare repeat the first ray.
+                    let mut lanes: V3<S::f32s> = V3::splat(simd, own[0]);
+                    for (lane, direction) in own.iter().enumerate() {
+                        lanes.x.as_mut_slice()[lane] = direction.x;
+                        lanes.y.as_mut_slice()[lane] = direction.y;
+                        lanes.z.as_mut_slice()[lane] = direction.z;
+                    }
+                    let packet = Packet::new(self.geometry, V3::splat(simd, origin), lanes);
+                    let (near, far) = (S::f32s::splat(simd, t_min), S::f32s::splat(simd, f32::INFINITY));
+                    let mut visitor = ClosestHit::new(simd, near, far);
+                    search.traverse(simd, &packet, &mut self.stack, &mut visitor);
+                    hits.extend((0..own.len()).map(|lane| (visitor.t[lane], visitor.primitive[lane])));
+                },
+            );
+        }
+        hits
+    }
+
+    fn normal(&self, primitive: PrimitiveIndex) -> Option<Vec3> {
+        let (normal, _) = self.geometry.plane_of(primitive)?;
+        let slot = self.geometry.slots[primitive as usize];
+        // The corners of triangles are stored in another order, and whether that turns them around.
+        let turned = slot.kind == PrimitiveKind::Triangle
+            && self.geometry.triangles[slot.block as usize].get(usize::from(slot.place))[9] < 0.0;
+        Some(if turned { -normal } else { normal })
+    }
+}
+
+/// `count` directions all around, evenly (a Fibonacci lattice; Swinbank and Purser, 2006).
+pub fn around(count: usize) -> Vec<Vec3> {
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let direction = |i: usize| {
+        let y = 1.0 - (2.0 * i as f64 + 1.0) / count as f64;
+        let (across, angle) = ((1.0 - y * y).sqrt(), golden * i as f64);
+        glam::DVec3::new(across * libm::cos(angle), y, across * libm::sin(angle)).as_vec3().normalize()
+    };
+    (0..count).map(direction).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Part, PrimitiveId, Shape};
+
+    #[test]
+    fn tells_the_outer_side_of_triangles_and_what_is_missed() {
+        let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        for (corners, normal) in [(vertices, Vec3::Z), ([Vec3::ZERO, Vec3::Y, Vec3::X], Vec3::NEG_Z)] {
+            let id = PrimitiveId { object: 0, primitive: 0 };
+            let shape = Shape::Triangle { vertices: corners };
+            let part = Part { shape, id, attributes: None, extras: None, holes: None };
+            let geometry = Geometry::build(vec![part]);
+            let mut probe = Probe::new(&geometry);
+            let origin = Vec3::new(0.2, 0.2, 2.0);
+            let directions = [Vec3::NEG_Z, Vec3::Z, Vec3::X];
+            assert_eq!(probe.look(origin, &directions, 0.0), [Some(Met { distance: 2.0, normal }), None, None]);
+        }
+    }
+
+    #[test]
+    fn directions_lie_all_around() {
+        let all = around(200);
+        assert!(all.iter().sum::<Vec3>().length() < 0.5);
+        for axis in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
+            assert!(all.iter().any(|d| d.dot(axis) > 0.97));
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! The tree of nodes: transforms, instances, odd trees.
+
+use super::file::{CORNERS, File, triangle, try_load, warnings};
+use glam::Vec3;
+use raywalk::scene::{LoadOptions, Scene, load};
+
+const PLAIN: &str = r#""materials": [{}]"#;
+
+fn max(scene: &Scene) -> Vec3 {
+    scene.bounds().max
+}
+
+#[test]
+fn matrices_and_trs_place_alike() {
+    // Twice as large, turned by a quarter about z, moved by (1, 2, 3).
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let trs = format!(r#""translation": [1, 2, 3], "rotation": [0, 0, {half}, {half}], "scale": [2, 2, 2]"#);
+    let matrix = r#""matrix": [0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 1, 2, 3, 1]"#;
+    for keys in [&trs, matrix] {
+        let scene = triangle(&format!(r#"{PLAIN}, "nodes": [{{ "mesh": 0, {keys} }}]"#));
+        let bounds = scene.bounds();
+        assert!(bounds.min.abs_diff_eq(Vec3::new(-1.0, 2.0, 3.0), 1e-6), "{bounds:?}");
+        assert!(bounds.max.abs_diff_eq(Vec3::new(1.0, 4.0, 3.0), 1e-6), "{bounds:?}");
+    }
+}
+
+#[test]
+fn children_stand_within_their_parents_and_objects_follow_the_file() {
+    let scene = triangle(&format!(
+        r#"{PLAIN}, "scene": 1, "scenes": [{{}}, {{ "nodes": [2, 0] }}], "nodes": [
+        {{ "name": "a", "mesh": 0, "children": [1], "translation": [10, 0, 0] }},
+        {{ "name": "b", "mesh": 0, "scale": [2, 1, 1] }}, {{ "name": "c", "mesh": 0 }}, {{ "name": "unused", "mesh": 0 }}]"#
+    ));
+    let names: Vec<_> = scene.objects.iter().map(|object| object.name.as_deref().unwrap_or("")).collect();
+    assert_eq!(names, ["c", "a", "b"]);
+    assert_eq!(scene.objects.iter().map(|object| object.bounds.max.x).collect::<Vec<_>>(), [1.0, 11.0, 12.0]);
+}
+
+#[test]
+fn what_a_scale_of_zero_flattens_is_left_out() {
+    let scene = triangle(&format!(r#"{PLAIN}, "nodes": [{{ "mesh": 0, "scale": [1, 0, 1] }}, {{ "mesh": 0 }}]"#));
+    assert_eq!(scene.objects.len(), 1);
+    assert!(warnings(&scene)[0].starts_with("/nodes/0: the node's scale is 0"));
+}
+
+#[test]
+fn nodes_in_circles_and_with_two_parents_are_entered_once() {
+    for (nodes, objects, pointer) in [
+        (r#"[{ "mesh": 0, "children": [0] }]"#, 0, ""),
+        (r#"[{ "mesh": 0, "children": [1] }, { "children": [0] }]"#, 0, ""),
+        (r#"[{ "children": [1, 1] }, { "mesh": 0 }]"#, 1, "/nodes/0/children/1"),
+        (r#"[{ "children": [2] }, { "children": [2] }, { "mesh": 0 }]"#, 1, "/nodes/1/children/0"),
+    ] {
+        let scene = triangle(&format!(r#"{PLAIN}, "nodes": {nodes}"#));
+        assert_eq!(scene.objects.len(), objects, "{nodes}");
+        if !pointer.is_empty() {
+            assert!(warnings(&scene)[0].starts_with(pointer), "{nodes}");
+        }
+        let scene = triangle(&format!(r#"{PLAIN}, "nodes": {nodes}, "scenes": [{{ "nodes": [0] }}]"#));
+        assert!(scene.objects.len() <= 1, "{nodes}");
+    }
+}
+
+#[test]
+fn a_chain_of_a_hundred_thousand_nodes_needs_no_stack() {
+    let count = 100_000;
+    let links = (1..count).map(|next| format!(r#"{{ "children": [{next}] }}"#)).collect::<Vec<_>>().join(", ");
+    let nodes = format!(r#"{PLAIN}, "nodes": [{links}, {{ "mesh": 0 }}]"#);
+    assert_eq!(triangle(&nodes).objects.len(), 1);
+}
+
+#[test]
+fn a_node_draws_as_many_instances_as_it_says() {
+    let mut file = File::default();
+    let positions = file.vectors(&CORNERS);
+    let moves = file.vectors(&[[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [0.0, 0.0, 9.0]]);
+    let scales = file.vectors(&[[1.0, 1.0, 1.0], [2.0, 1.0, 1.0], [1.0, 1.0, 1.0]]);
+    let rest = format!(
+        r#""extensionsUsed": ["EXT_mesh_gpu_instancing"], "extensionsRequired": ["EXT_mesh_gpu_instancing"],
+        "meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": {positions} }} }}] }}],
+        "nodes": [{{ "mesh": 0, "translation": [100, 0, 0], "extensions": {{ "EXT_mesh_gpu_instancing":
+            {{ "attributes": {{ "TRANSLATION": {moves}, "SCALE": {scales} }} }} }} }}]"#
+    );
+    let scene = file.load(&rest);
+    assert!(scene.warnings.is_empty());
+    assert_eq!(scene.objects.len(), 3);
+    assert_eq!(max(&scene), Vec3::new(107.0, 1.0, 9.0));
+}
+
+#[test]
+fn limits_hold_and_are_named() {
+    let folder = crate::temporary::Folder::new();
+    let mut file = File::default();
+    let positions = file.vectors(&CORNERS);
+    let rest = format!(
+        r#""meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": {positions} }} }}] }}],
+        "nodes": [{{ "mesh": 0 }}, {{ "mesh": 0 }}, {{ "mesh": 0 }}]"#
+    );
+    let path = folder.write("s.glb", file.binary(&rest));
+    assert_eq!(load(&path, &LoadOptions::default()).unwrap().objects.len(), 3);
+    for (limit, value) in [("nodes", 2), ("objects", 2), ("primitives", 2), ("vertices", 2), ("file-bytes", 100)] {
+        let mut options = LoadOptions::default();
+        options.limits.set(limit, &value.to_string()).unwrap();
+        let error = load(&path, &options).unwrap_err().to_string();
+        assert!(error.contains(&format!("limit {limit} of {value}")), "{error}");
+    }
+}
+
+#[test]
+fn text_and_binary_say_the_same() {
+    let mut file = File::default();
+    let positions = file.vectors(&CORNERS);
+    let rest = format!(
+        r#""meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": {positions} }} }}] }}], "nodes": [{{ "mesh": 0 }}]"#
+    );
+    let bounds = [file.text(&rest).into_bytes(), file.binary(&rest)].map(|bytes| try_load(bytes).unwrap().bounds());
+    assert_eq!(bounds[0], bounds[1]);
+}
+
+#[test]
+fn buffers_lie_in_files_beside_and_nowhere_else() {
+    let folder = crate::temporary::Folder::new();
+    let bytes: Vec<u8> = CORNERS.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+    folder.write("in/data dir/a.bin", &bytes);
+    folder.write("out.bin", &bytes);
+    let text = |uri: &str| {
+        format!(
+            r#"{{ "asset": {{ "version": "2.0" }}, "buffers": [{{ "byteLength": 36, "uri": "{uri}" }}],
+            "bufferViews": [{{ "buffer": 0, "byteLength": 36 }}],
+            "accessors": [{{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }}],
+            "meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": 0 }} }}] }}], "nodes": [{{ "mesh": 0 }}] }}"#
+        )
+    };
+    let read = |uri: &str| load(&folder.write("in/s.gltf", text(uri)), &LoadOptions::default());
+    assert!(read("data%20dir/a.bin").is_ok() && read("data dir/../data dir/a.bin").is_ok());
+    for uri in
+        ["../out.bin", "%2e%2e%2fout.bin", "/etc/passwd", "file:///etc/passwd", "http://a/b", "none.bin", "%FF", "data"]
+    {
+        let error = read(uri).unwrap_err().to_string();
+        assert!(error.contains("(/buffers/0)"), "{uri}: {error}");
+    }
+}

@@ -1,0 +1,142 @@
+//! Lights, cameras and exposure: what the first picture shows.
+
+use super::file::{CORNERS, File, triangle, warnings};
+use glam::Vec3;
+use raywalk::render::{Film, Planes, Scratch, render_frame};
+use raywalk::scene::Scene;
+use raywalk::scene::light::{Falloff, LightKind};
+use raywalk::settings::{Exposure, Settings};
+
+/// A white wall of two triangles in the plane z = 0, 10 wide and high, with the given keys besides.
+fn wall(material: &str, rest: &str) -> Scene {
+    let mut file = File::default();
+    let positions = file.vectors(&[[-5.0, -5.0, 0.0], [5.0, -5.0, 0.0], [5.0, 5.0, 0.0], [-5.0, 5.0, 0.0]]);
+    let indices = file.indices(&[0, 1, 2, 0, 2, 3]);
+    file.load(&format!(
+        r#""meshes": [{{ "primitives": [{{ "material": 0, "indices": {indices}, "attributes": {{ "POSITION": {positions} }} }}] }}],
+        "materials": [{material}], {rest}"#
+    ))
+}
+
+/// The middle of the first picture.
+fn middle(scene: &Scene) -> [u8; 3] {
+    let mut film = Film::new(9, 9, Planes::default());
+    render_frame(scene, &scene.cameras[0].camera, &Settings::exact(), &mut Scratch::new(), &mut film);
+    let [r, g, b, _] = *film.rgba()[4 * 40..].first_chunk().expect("81 pixels");
+    [r, g, b]
+}
+
+const MATTE: &str = r#"{ "pbrMetallicRoughness": { "metallicFactor": 0 } }"#;
+
+#[test]
+fn lights_stand_at_their_nodes() {
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let scene = triangle(&format!(
+        r#""materials": [{{}}], "extensions": {{ "KHR_lights_punctual": {{ "lights": [
+            {{ "type": "point", "intensity": 4, "color": [1, 0.5, 0.25], "name": "lamp" }},
+            {{ "type": "directional" }},
+            {{ "type": "spot", "spot": {{ "innerConeAngle": 0, "outerConeAngle": 1.0471975512 }} }}] }} }},
+        "nodes": [{{ "translation": [1, 2, 3], "extensions": {{ "KHR_lights_punctual": {{ "light": 0 }} }} }},
+            {{ "rotation": [-{half}, 0, 0, {half}], "extensions": {{ "KHR_lights_punctual": {{ "light": 1 }} }} }},
+            {{ "name": "beam", "extensions": {{ "KHR_lights_punctual": {{ "light": 2 }} }} }}]"#
+    ));
+    let [lamp, sun, beam] = &scene.lights[..] else { panic!("three lights") };
+    assert_eq!((lamp.name.as_deref(), lamp.color), (Some("lamp"), Vec3::new(4.0, 2.0, 1.0)));
+    assert_eq!(
+        (lamp.kind, lamp.falloff),
+        (LightKind::Point { position: Vec3::new(1.0, 2.0, 3.0) }, Falloff::InverseSquare)
+    );
+    let LightKind::Directional { direction } = sun.kind else { panic!("{sun:?}") };
+    assert!(direction.abs_diff_eq(Vec3::NEG_Y, 1e-6), "{direction}");
+    let LightKind::Spot { direction, cos_inner, cos_outer, .. } = beam.kind else { panic!("{beam:?}") };
+    assert_eq!((direction, cos_inner, beam.name.as_deref()), (Vec3::NEG_Z, 1.0, Some("beam")));
+    assert!((cos_outer - 0.5).abs() < 1e-6);
+    assert!(!scene.headlight);
+}
+
+#[test]
+fn cameras_stand_at_their_nodes() {
+    let scene = triangle(
+        r#""materials": [{}], "cameras": [{ "name": "eye", "type": "perspective", "perspective": { "yfov": 1, "znear": 0.1 } },
+            { "type": "orthographic", "orthographic": { "xmag": 2, "ymag": 2, "znear": 0, "zfar": 10 } }],
+        "nodes": [{ "mesh": 0 }, { "camera": 0, "translation": [0, 0, 5] }, { "camera": 1, "translation": [0.5, 0.5, 2] },
+            { "camera": 0, "scale": [0, 0, 0] }]"#,
+    );
+    let [eye, flat] = &scene.cameras[..] else { panic!("two cameras: {:?}", scene.cameras) };
+    assert_eq!((eye.name.as_str(), eye.camera.eye), ("eye", Vec3::new(0.0, 0.0, 5.0)));
+    assert!((eye.camera.fov - 57.29578).abs() < 1e-4 && eye.camera.frame(4, 4).forward == Vec3::NEG_Z);
+    // What it shows of the middle of the scene is as large: 2 up and down at a distance of 2.
+    assert!((flat.camera.fov - 90.0).abs() < 1e-3, "{}", flat.camera.fov);
+    assert!(warnings(&scene).iter().any(|warning| warning.contains("orthographic")));
+    assert!(warnings(&scene).iter().any(|warning| warning.contains("sees nothing")));
+}
+
+#[test]
+fn lights_of_any_strength_give_the_same_picture() {
+    let lit = |intensity: f64, kind: &str| {
+        middle(&wall(
+            MATTE,
+            &format!(
+                r#""extensions": {{ "KHR_lights_punctual": {{ "lights": [{{ "type": "{kind}", "intensity": {intensity} }}] }} }},
+                "nodes": [{{ "mesh": 0 }}, {{ "translation": [0, 0, 5], "extensions": {{ "KHR_lights_punctual": {{ "light": 0 }} }} }}]"#
+            ),
+        ))
+    };
+    for kind in ["point", "directional"] {
+        let usual = lit(100.0, kind);
+        assert!((100..250).contains(&usual[0]), "{kind}: {usual:?}");
+        for intensity in [0.01, 1.0, 100_000.0] {
+            let other = lit(intensity, kind);
+            assert!(
+                other.iter().zip(usual).all(|(a, b)| a.abs_diff(b) <= 1),
+                "{kind} {intensity}: {other:?} {usual:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_takes_no_light_and_what_glows_are_seen_under_any_light() {
+    for intensity in [1, 100_000] {
+        let rest = format!(
+            r#""extensions": {{ "KHR_lights_punctual": {{ "lights": [{{ "type": "directional", "intensity": {intensity} }}] }} }},
+            "nodes": [{{ "mesh": 0 }}, {{ "extensions": {{ "KHR_lights_punctual": {{ "light": 0 }} }} }}]"#
+        );
+        let unlit = r#"{ "pbrMetallicRoughness": { "baseColorFactor": [0.5, 0.2, 0.2, 1] }, "extensions": { "KHR_materials_unlit": {} } }"#;
+        // Khronos PBR Neutral takes 0.04 off.
+        let [r, g, b] = middle(&wall(unlit, &rest));
+        assert!(r.abs_diff(181) <= 1 && g.abs_diff(111) <= 2 && g == b, "{intensity}: {r} {g} {b}");
+        let glowing = r#"{ "emissiveFactor": [1, 1, 1], "pbrMetallicRoughness": { "baseColorFactor": [0, 0, 0, 1] } }"#;
+        let glow = middle(&wall(glowing, &rest));
+        assert!(glow[0] > 220, "{intensity}: {glow:?}");
+    }
+}
+
+#[test]
+fn a_file_without_light_or_camera_is_seen_all_the_same() {
+    let scene = wall(MATTE, r#""nodes": [{ "mesh": 0 }]"#);
+    assert!(scene.headlight && scene.cameras.len() == 1);
+    let seen = middle(&scene);
+    assert!((120..250).contains(&seen[0]), "{seen:?}");
+    // The same for every frame, and only where it is asked for.
+    assert_eq!(scene.stops(Exposure::Scene), scene.auto_exposure);
+    assert_eq!(scene.stops(Exposure::Stops(1.5)), 1.5);
+}
+
+#[test]
+fn vertex_colours_reach_the_picture() {
+    let mut file = File::default();
+    let positions = file.vectors(&CORNERS);
+    let view = file.view(&[255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255], "");
+    let colors = file.accessor(format!(
+        r#"{{ "bufferView": {view}, "componentType": 5121, "normalized": true, "count": 3, "type": "VEC4" }}"#
+    ));
+    let scene = file.load(&format!(
+        r#""meshes": [{{ "primitives": [{{ "material": 0, "attributes": {{ "POSITION": {positions}, "COLOR_0": {colors} }} }}] }}],
+        "materials": [{MATTE}], "nodes": [{{ "mesh": 0 }}]"#
+    ));
+    let mut film = Film::new(33, 33, Planes::default());
+    render_frame(&scene, &scene.cameras[0].camera, &Settings::exact(), &mut Scratch::new(), &mut film);
+    let seen: Vec<_> = film.rgba().chunks_exact(4).filter(|p| p[0] > 0).collect();
+    assert!(seen.len() > 50 && seen.iter().all(|p| p[0] > 100 && p[1] < 40 && p[1] == p[2]), "{:?}", seen.first());
+}
