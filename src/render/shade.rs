@@ -225,6 +225,11 @@ fn shade_surfaces<S: Simd>(
         let one = V3::splat(simd, Vec3::ONE);
         opacity = one - materials.triple(simd, Row::Transparency).scale(skin.transmission);
     }
+    if frame.plan.metallic_roughness && frame.plan.coloured_shadows {
+        // No ray goes on through what is too rough for it: such a surface scatters all its light, rather than be black.
+        let rough = skin.roughness.simd_ge(S::f32s::splat(simd, MIRROR_ROUGHNESS));
+        opacity = V3::select(rough, V3::splat(simd, Vec3::ONE), opacity);
+    }
     let active = Mask::<S>::from_bitmask(simd, hits.active);
     let mut ambient = V3::splat(simd, frame.ambient) * materials.triple(simd, Row::Ambient);
     if frame.plan.occlusion {

@@ -78,10 +78,10 @@ pub struct Scaled<T = u32> {
 pub struct Relief<T = u32> {
     /// Tangent-space normals (red to the right, green up, blue outward); the scale multiplies red and green.
     pub normal: Option<Scaled<T>>,
-    /// Heights from 0 (black) to the scale (white), in units of the texture coordinates' length on the surface, that
-    /// bend the normal (Blinn, SIGGRAPH 1978).
+    /// Heights from 0 (black) to the scale (white), in the scene's unit of length, that bend the normal (Blinn, SIGGRAPH
+    /// 1978).
     pub bump: Option<Scaled<T>>,
-    /// Depths from 0 (white) to the scale (black), in texture coordinates, that move what is looked up
+    /// Depths from 0 (white) to the scale (black), in the scene's unit of length, that move what is looked up
     /// (parallax occlusion mapping; Tatarchuk, I3D 2006).
     pub parallax: Option<Scaled<T>>,
 }

@@ -199,7 +199,11 @@ impl<'a> Tracer<'a> {
 
     /// Ambient and direct light, reflected towards `viewer`.
     fn local(&self, surface: &Surface, viewer: DVec3, material: &Material, color: DVec3, path: &mut u64) -> DVec3 {
-        let opacity = DVec3::ONE - material.transparency.as_dvec3();
+        let opacity = match material.model {
+            // What is too rough for rays to go on through scatters all its light.
+            Model::MetallicRoughness { roughness, .. } if roughness >= 0.1 => DVec3::ONE,
+            _ => DVec3::ONE - material.transparency.as_dvec3(),
+        };
         let n = surface.shading;
         let ambient = match material.model {
             Model::Phong { ambient, .. } | Model::MetallicRoughness { ambient, .. } => ambient.as_dvec3(),
