@@ -131,7 +131,7 @@ impl<'d> Accessor<'d> {
             (ComponentType::U8, true) => strided.copy(elements, |[b]| f32::from(b) / 255.0),
             (ComponentType::U8, false) => strided.copy(elements, |[b]| f32::from(b)),
             (ComponentType::I8, true) => {
-                strided.copy(elements, |b| (f32::from(i8::from_le_bytes(b)) / 127.0).max(-1.0))
+                strided.copy(elements, |b| (f32::from(i8::from_le_bytes(b)) / 127.0).max(-1.0));
             }
             (ComponentType::I8, false) => strided.copy(elements, |b| f32::from(i8::from_le_bytes(b))),
             (ComponentType::U16, true) => strided.copy(elements, |b| f32::from(u16::from_le_bytes(b)) / 65535.0),

@@ -35,20 +35,23 @@ pub fn open(bytes: &[u8]) -> Read<Container<'_>> {
         return Err(wrong(format!("the header says {length} bytes, the file has {}; it was cut off", bytes.len())));
     }
     let mut chunks = bytes.get(12..length).unwrap_or_default();
-    let json = match next_chunk(&mut chunks).map_err(wrong)? {
-        Some((JSON, json)) => json,
-        _ => return Err(wrong("the first chunk must be of type JSON".to_owned())),
+    let Some(Chunk { kind: JSON, contents: json }) = next_chunk(&mut chunks).map_err(wrong)? else {
+        return Err(wrong("the first chunk must be of type JSON".to_owned()));
     };
     // Chunks of other types are to be skipped, and only the second may hold the bytes.
-    let bin = match next_chunk(&mut chunks).map_err(wrong)? {
-        Some((BIN, bin)) => Some(bin),
-        _ => None,
-    };
+    let second = next_chunk(&mut chunks).map_err(wrong)?;
+    let bin = second.filter(|chunk| chunk.kind == BIN).map(|chunk| chunk.contents);
     Ok(Container { json, bin })
 }
 
-/// Splits off the next chunk, as its type and its contents.
-fn next_chunk<'a>(chunks: &mut &'a [u8]) -> Result<Option<(&'a [u8], &'a [u8])>, String> {
+/// A part of a file.
+struct Chunk<'a> {
+    kind: &'a [u8],
+    contents: &'a [u8],
+}
+
+/// Splits off the next chunk.
+fn next_chunk<'a>(chunks: &mut &'a [u8]) -> Result<Option<Chunk<'a>>, String> {
     if chunks.is_empty() {
         return Ok(None);
     }
@@ -61,7 +64,7 @@ fn next_chunk<'a>(chunks: &mut &'a [u8]) -> Result<Option<(&'a [u8], &'a [u8])>,
         return Err(format!("a chunk of {length} bytes has only {} left in the file", contents.len()));
     };
     *chunks = &contents[length..];
-    Ok(Some((kind, own)))
+    Ok(Some(Chunk { kind, contents: own }))
 }
 
 fn number(bytes: &[u8], at: usize) -> Option<u32> {
