@@ -4,6 +4,7 @@
 //! on for so long with fresh ones.
 
 use super::picture;
+use crate::gltf::broken::rich;
 use crate::random::Random;
 use crate::temporary::Folder;
 use raywalk::scene::{FORMATS, LoadOptions, load};
@@ -17,75 +18,84 @@ struct Seed {
     name: &'static str,
     /// The scene that it is a part of, where it is none.
     part_of: Option<&'static str>,
-    bytes: &'static [u8],
+    bytes: Vec<u8>,
     tokens: &'static [&'static str],
 }
 
-const SEEDS: &[Seed] = &[
-    Seed {
-        name: "s.json",
-        part_of: None,
-        bytes: include_bytes!("../every_type.json"),
-        tokens: &["{", "}", "[", "]", "\"", ",", "-", "1e39", "null", "0", "[]", "\"texture\":", "\"model\""],
-    },
-    Seed {
-        name: "s.xml",
-        part_of: None,
-        bytes: include_bytes!("every_type.xml"),
-        tokens: &[
-            "<",
-            ">",
-            "/>",
-            "\"",
-            "=",
-            ",",
-            "-",
-            "1e39",
-            "<!--",
-            "<![CDATA[",
-            "&#0;",
-            "<!",
-            "<model file='s.xml'/>",
-        ],
-    },
-    Seed {
-        name: "s.nff",
-        part_of: None,
-        bytes: include_bytes!("every_entity.nff"),
-        tokens: &["\n", " ", "#", "-", "1e39", "nan", "p 1e9 ", "pp 4 ", "c ", "0 0 0 0 ", "v ", "f "],
-    },
-    Seed {
-        name: "s.obj",
-        part_of: None,
-        bytes: include_bytes!("every_statement.obj"),
-        tokens: &[
-            "\n",
-            " ",
-            "/",
-            "-",
-            "1e39",
-            "nan",
-            "f ",
-            "f 1 2 3 1 2 3\n",
-            "-1",
-            "0",
-            "\\\n",
-            "usemtl ",
-            "mtllib s.obj\n",
-            "vt 1\n",
-        ],
-    },
-    Seed {
-        name: "every_statement.mtl",
-        part_of: Some("library.obj"),
-        bytes: include_bytes!("every_statement.mtl"),
-        tokens: &["\n", " ", "#", "-", "1e39", "nan", "newmtl ", "d ", "map_Kd ", "-s ", "-o 1 ", "-bm ", "../", "\\"],
-    },
-];
+fn seeds() -> Vec<Seed> {
+    let (file, rest) = rich();
+    let gltf_tokens =
+        &["{", "}", "[", "]", "\"", ",", "-", "1e39", "null", "0", "[]", "4294967297", "18446744073709551615", "%"];
+    vec![
+        Seed {
+            name: "s.json",
+            part_of: None,
+            bytes: include_bytes!("../every_type.json").to_vec(),
+            tokens: &["{", "}", "[", "]", "\"", ",", "-", "1e39", "null", "0", "[]", "\"texture\":", "\"model\""],
+        },
+        Seed {
+            name: "s.xml",
+            part_of: None,
+            bytes: include_bytes!("every_type.xml").to_vec(),
+            tokens: &[
+                "<",
+                ">",
+                "/>",
+                "\"",
+                "=",
+                ",",
+                "-",
+                "1e39",
+                "<!--",
+                "<![CDATA[",
+                "&#0;",
+                "<!",
+                "<model file='s.xml'/>",
+            ],
+        },
+        Seed {
+            name: "s.nff",
+            part_of: None,
+            bytes: include_bytes!("every_entity.nff").to_vec(),
+            tokens: &["\n", " ", "#", "-", "1e39", "nan", "p 1e9 ", "pp 4 ", "c ", "0 0 0 0 ", "v ", "f "],
+        },
+        Seed {
+            name: "s.obj",
+            part_of: None,
+            bytes: include_bytes!("every_statement.obj").to_vec(),
+            tokens: &[
+                "\n",
+                " ",
+                "/",
+                "-",
+                "1e39",
+                "nan",
+                "f ",
+                "f 1 2 3 1 2 3\n",
+                "-1",
+                "0",
+                "\\\n",
+                "usemtl ",
+                "mtllib s.obj\n",
+                "vt 1\n",
+            ],
+        },
+        Seed {
+            name: "every_statement.mtl",
+            part_of: Some("library.obj"),
+            bytes: include_bytes!("every_statement.mtl").to_vec(),
+            tokens: &[
+                "\n", " ", "#", "-", "1e39", "nan", "newmtl ", "d ", "map_Kd ", "-s ", "-o 1 ", "-bm ", "../", "\\",
+            ],
+        },
+        Seed { name: "s.gltf", part_of: None, bytes: file.text(&rest).into_bytes(), tokens: gltf_tokens },
+        Seed { name: "s.glb", part_of: None, bytes: file.binary(&rest), tokens: gltf_tokens },
+    ]
+}
 
 /// Damages a file in one to three places.
 fn mutated(seed: &Seed, random: &mut Random) -> Vec<u8> {
-    let mut bytes = seed.bytes.to_vec();
+    let mut bytes = seed.bytes.clone();
     for _ in 0..=random.below(3) {
         let at = random.below(bytes.len());
         let end = (at + random.below(40)).min(bytes.len());
@@ -110,9 +120,10 @@ fn mutated(seed: &Seed, random: &mut Random) -> Vec<u8> {
 }
 
 #[test]
-fn every_text_format_has_a_seed() {
+fn every_format_has_a_seed() {
+    let seeds = seeds();
     for format in FORMATS {
-        let has_seed = |extension: &&str| SEEDS.iter().any(|seed| seed.name.ends_with(&format!(".{extension}")));
+        let has_seed = |extension: &&str| seeds.iter().any(|seed| seed.name.ends_with(&format!(".{extension}")));
         assert!(format.extensions.iter().any(has_seed), "{}", format.name);
     }
 }
@@ -125,11 +136,12 @@ fn damaged_files_never_end_the_program() {
     let fresh = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64);
     let mut random = Random::new(if fuzz.is_some() { fresh } else { 1 });
     let start = Instant::now();
-    let mut drawn = vec![0; SEEDS.len()];
+    let seeds = seeds();
+    let mut drawn = vec![0; seeds.len()];
     let mut tries = 0;
     while fuzz.map_or(tries < TRIES, |seconds| start.elapsed().as_secs_f64() < seconds) {
         tries += 1;
-        for (seed, drawn) in SEEDS.iter().zip(&mut drawn) {
+        for (seed, drawn) in seeds.iter().zip(&mut drawn) {
             let mutated = folder.write(seed.name, mutated(seed, &mut random));
             let file = seed.part_of.map_or(mutated, |scene| folder.path().join(scene));
             let begun = Instant::now();
@@ -141,7 +153,7 @@ fn damaged_files_never_end_the_program() {
             assert!(begun.elapsed() < Duration::from_secs(5), "{} takes {:?}", kept.display(), begun.elapsed());
         }
     }
-    for (seed, drawn) in SEEDS.iter().zip(drawn) {
+    for (seed, drawn) in seeds.iter().zip(drawn) {
         // Nothing in a library is an error.
         let least = if seed.part_of.is_some() { tries } else { 1 };
         assert!((least..=tries).contains(&drawn), "{}: {drawn} of {tries} are valid", seed.name);

@@ -118,7 +118,7 @@ fn wrong_json_names_its_line_and_pointer() {
 }
 
 /// A file with a little of everything.
-fn rich() -> (File, String) {
+pub fn rich() -> (File, String) {
     let mut file = File::default();
     let positions = file.vectors(&CORNERS);
     let uvs = file.vectors(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
@@ -153,51 +153,6 @@ fn rich() -> (File, String) {
         "images": [{{ "uri": "data:image/png;base64,iVBORw0KGgo=" }}]"#
     );
     (file, rest)
-}
-
-#[test]
-fn mutated_files_never_panic() {
-    const TOKENS: [&[u8]; 14] = [
-        b"{",
-        b"}",
-        b"[",
-        b"]",
-        b"\"",
-        b",",
-        b"-",
-        b"1e39",
-        b"null",
-        b"0",
-        b"[]",
-        b"4294967297",
-        b"18446744073709551615",
-        b"%",
-    ];
-    let folder = Folder::new();
-    let (file, rest) = rich();
-    let originals = [("s.gltf", file.text(&rest).into_bytes()), ("s.glb", file.binary(&rest))];
-    let mut random = crate::random::Random::new(7);
-    let mut accepted = 0;
-    for round in 0..4000 {
-        let (name, original) = &originals[round % 2];
-        let mut bytes = original.clone();
-        for _ in 0..=random.below(3) {
-            let at = random.below(bytes.len());
-            match random.below(4) {
-                0 => bytes[at] = random.below(256) as u8,
-                1 => drop(bytes.drain(at..(at + random.below(40)).min(bytes.len()))),
-                2 => drop(bytes.splice(at..at, TOKENS[random.below(TOKENS.len())].iter().copied())),
-                // A digit for another: the text stays valid, the numbers become odd.
-                _ => {
-                    if let Some(offset) = bytes.iter().skip(at).position(u8::is_ascii_digit) {
-                        bytes[at + offset] = b'0' + random.below(10) as u8;
-                    }
-                }
-            }
-        }
-        accepted += usize::from(load(&folder.write(name, &bytes), &LoadOptions::default()).is_ok());
-    }
-    assert!((100..3900).contains(&accepted), "{accepted} of the mutated files are valid");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! glTF: what each part of a file becomes, how wrong files fail, and files that others made.
 
-mod broken;
+pub mod broken;
 mod corpus;
 mod file;
 mod materials;
