@@ -4,7 +4,7 @@ use super::temporary::Folder;
 use raywalk::measure::bench::{Bench, BenchError, Listener};
 use raywalk::measure::records::{Environment, Part, Records, RecordsError};
 use raywalk::measure::summary::Summary;
-use raywalk::measure::sweep::{Effort, Job, View, of_scene};
+use raywalk::measure::sweep::{Effort, Job, View, by_primitives, of_scene};
 use raywalk::measure::{page, stability, thesis};
 use raywalk::render::CancelToken;
 use raywalk::scene::{Camera, LoadOptions, load_text};
@@ -62,6 +62,20 @@ fn run(folder: &Path, jobs: &[Job], stop: u64) -> Result<Records, BenchError> {
 
 fn load(folder: &Path) -> Records {
     Records::load(folder).expect("readable").expect("there are records")
+}
+
+#[test]
+fn errors_are_held_against_a_picture_without_approximations() {
+    let (view, base) = (view(), Settings::fast());
+    let jobs = of_scene(&view, &base, &TINY).into_iter().chain(stability::jobs(&base, &TINY).expect("valid scenes"));
+    let jobs = jobs.chain(thesis::jobs(&view, &base));
+    for job in jobs.chain(by_primitives(&base, &TINY).expect("valid scenes")) {
+        let reference = match &job {
+            Job::Compare(job) => &job.reference.settings,
+            Job::Walk(job) => &job.reference,
+        };
+        assert_eq!(*reference, reference.reference());
+    }
 }
 
 #[test]

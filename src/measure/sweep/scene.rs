@@ -4,7 +4,7 @@ use super::method::{optimisations_alone, optimisations_taken_away, sweep_methods
 use super::{Comparison, Effort, Job, Judge, Method, Reference, View, Walk};
 use crate::measure::records::Part;
 use crate::scene::Camera;
-use crate::settings::{Settings, Visibility};
+use crate::settings::Settings;
 use std::time::Duration;
 
 /// Frames of a walk that no path was given for.
@@ -16,7 +16,7 @@ const STEP_PIXELS: f32 = 0.7;
 /// Without a path the camera takes some steps aside for the walk; with one, settings are compared from several places
 /// along it, and all but these two begin where it does.
 pub fn of_scene(view: &View, base: &Settings, effort: &Effort) -> Vec<Job> {
-    let full = Settings { visibility: Visibility::Full, ..base.clone() };
+    let full = base.reference();
     let reference = Reference { scene: view.scene.clone(), camera: view.camera, settings: full.clone() };
     let comparison = |part, (width, height): (u32, u32), at, judge, methods: Vec<Method>, percent| {
         let budget = effort.share(percent);
