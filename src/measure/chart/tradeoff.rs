@@ -7,6 +7,7 @@ use super::number::short;
 use super::palette::class;
 use super::svg::{Anchor, Svg};
 use super::{Chart, by_view, file_name, view_title};
+use crate::measure::front::front;
 use crate::measure::records::{Part, Records, Row};
 
 const WIDTH: f64 = 880.0;
@@ -78,7 +79,7 @@ fn draw_panel(svg: &mut Svg, area: Area, records: &Records, rows: &[&Row], (metr
     speed_ups(svg, &area, &x, rows);
     area.frame(svg);
 
-    let front = front(&points);
+    let front = front(&points.iter().map(|(row, error)| (row.frame_ms.median, *error)).collect::<Vec<_>>());
     let corners: Vec<(f64, f64)> = front.iter().map(|&i| place(points[i].0, points[i].1)).collect();
     svg.polyline(&corners, "front", "none");
     let places: Vec<(f64, f64)> = points.iter().map(|&(row, error)| place(row, error)).collect();
@@ -119,20 +120,6 @@ fn speed_ups(svg: &mut Svg, area: &Area, x: &Axis, rows: &[&Row]) {
             last = at;
         }
     }
-}
-
-/// What nothing beats in both time and error, by time.
-fn front(points: &[(&Row, f64)]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    let time = |i: usize| points[i].0.frame_ms.median;
-    order.sort_by(|&a, &b| time(a).total_cmp(&time(b)).then(points[a].1.total_cmp(&points[b].1)));
-    let mut least = f64::INFINITY;
-    order.retain(|&i| {
-        let better = points[i].1 < least;
-        least = least.min(points[i].1);
-        better
-    });
-    order
 }
 
 /// What is told of a point.

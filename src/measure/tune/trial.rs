@@ -1,6 +1,7 @@
 //! Settings that were tried: what they cost, and how wrong their pictures are.
 
 use super::bound::Bound;
+use crate::measure::front::unbeaten;
 use crate::measure::metric::Pair;
 use crate::measure::run::CpuTime;
 use crate::measure::statistics::Spread;
@@ -114,20 +115,17 @@ impl Trial {
 /// Of `places` in `trials`, those that nothing else of them beats in both time and error; of times that differ by less than
 /// the share `noise`, the simplest.
 pub(super) fn front(trials: &[Trial], places: &[usize], bounds: &[Bound], noise: f64) -> Vec<usize> {
-    let unbeaten = |places: &[usize], beats: &dyn Fn(&Trial, &Trial) -> bool| -> Vec<usize> {
-        let is_beaten = |place: usize| {
-            let by = |&other: &usize| {
-                other != place
-                    && trials[other].is_as_true_as(&trials[place], bounds)
-                    && beats(&trials[other], &trials[place])
-            };
-            places.iter().any(by)
-        };
-        places.iter().copied().filter(|&place| !is_beaten(place)).collect()
+    let of_as_true = |places: &[usize], is_better: &dyn Fn(&Trial, &Trial) -> bool| {
+        unbeaten(places, |a, b| {
+            let (a, b) = (&trials[a], &trials[b]);
+            a.is_as_true_as(b, bounds) && is_better(a, b)
+        })
     };
     // In two steps, neither of which can go round in circles: together they could.
-    let places = unbeaten(places, &|a, b| a.cost() * (1.0 + noise) < b.cost());
-    unbeaten(&places, &|a, b| a.cost() <= b.cost() * (1.0 + noise) && (a.changes(), a.cost()) < (b.changes(), b.cost()))
+    let places = of_as_true(places, &|a, b| a.cost() * (1.0 + noise) < b.cost());
+    of_as_true(&places, &|a, b| {
+        a.cost() <= b.cost() * (1.0 + noise) && (a.changes(), a.cost()) < (b.changes(), b.cost())
+    })
 }
 
 #[cfg(test)]
