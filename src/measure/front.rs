@@ -27,6 +27,6 @@ mod tests {
     fn the_front_goes_from_fast_to_true_and_has_one_of_equals() {
         let points = [(80.0, 0.0), (90.0, 0.001), (40.0, 0.04), (40.0, 0.04), (40.0, 0.05), (80.0, 0.0)];
         assert_eq!(front(&points), [2, 0]);
-        assert_eq!(front(&[]), []);
+        assert!(front(&[]).is_empty());
     }
 }
