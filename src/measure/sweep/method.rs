@@ -13,6 +13,13 @@ pub struct Method {
     pub settings: Settings,
 }
 
+impl Method {
+    /// Whether others are held against it: such a frame is waited for, however long it takes.
+    pub fn is_measure(&self) -> bool {
+        matches!(self.name.as_str(), "full" | "exact")
+    }
+}
+
 /// Changes settings.
 pub type Change = fn(&mut Settings);
 
