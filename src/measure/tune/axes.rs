@@ -20,7 +20,10 @@ pub struct Axis(Vec<&'static Row>);
 pub fn axes(base: &Settings, fixed: &[&str]) -> Vec<Axis> {
     let free = |row: &&'static Row| {
         let asked = row.promise(&(row.get)(base));
-        is_varied(row) && !fixed.contains(&row.name) && asked != Some(Promise::Different) && !alternatives(row, base).is_empty()
+        is_varied(row)
+            && !fixed.contains(&row.name)
+            && asked != Some(Promise::Different)
+            && !alternatives(row, base).is_empty()
     };
     let (together, alone): (Vec<_>, Vec<_>) = ROWS.iter().filter(free).partition(|row| TOGETHER.contains(&row.name));
     let (same, approximate): (Vec<_>, Vec<_>) = alone.into_iter().partition(|row| keeps_pixels(row));

@@ -291,8 +291,7 @@ impl Search<'_> {
             let last = self.time_anew(last, end)?;
             let cost = |place: usize| self.trials[place].cost();
             let changes = |place: usize| self.trials[place].changes();
-            let noise =
-                |a: usize, b: usize| self.trials[a].noise().max(self.trials[b].noise()).max(LEAST_NOISE);
+            let noise = |a: usize, b: usize| self.trials[a].noise().max(self.trials[b].noise()).max(LEAST_NOISE);
             let by_cost = |a: &usize, b: &usize| cost(*a).total_cmp(&cost(*b));
             let Some(mut chosen) = last.iter().copied().min_by(by_cost) else { return Ok((None, None, LEAST_NOISE)) };
             let mut passed_over = None;
@@ -301,7 +300,9 @@ impl Search<'_> {
                     changes(place) < changes(chosen) && cost(place) <= cost(chosen) * (1.0 + noise(place, chosen))
                 };
                 let as_good = last.iter().copied().filter(is_as_good);
-                let Some(simpler) = as_good.min_by(|a, b| changes(*a).cmp(&changes(*b)).then(by_cost(a, b))) else { break };
+                let Some(simpler) = as_good.min_by(|a, b| changes(*a).cmp(&changes(*b)).then(by_cost(a, b))) else {
+                    break;
+                };
                 passed_over = Some(chosen);
                 chosen = simpler;
             }
