@@ -12,8 +12,11 @@ use std::time::{Duration, Instant};
 const VIEWS: usize = 3;
 /// Visits that everything is given that others are held against.
 const VISITS: usize = 5;
-/// Visits of each of the last candidates, and the time after which there are no more than [`NOISE_PARTS`].
+/// Visits of each of the last candidates: so many, more of frames that are so short that these take less than some time, and
+/// no more than [`NOISE_PARTS`] of those so long that they take more than another.
 const LAST_VISITS: usize = 24;
+const MOST_LAST_VISITS: usize = 240;
+const LEAST_LAST_TIME: Duration = Duration::from_secs(2);
 const LAST_TIME: Duration = Duration::from_secs(8);
 /// The last candidates: how much slower than the best they may be, and how many there are, without the simpler ones that
 /// they are held against.
@@ -335,14 +338,16 @@ impl Search<'_> {
     /// Times trials anew, in turn and equally often, and gives those that are near the fastest.
     fn time_anew(&mut self, mut last: Vec<usize>, end: Instant) -> Result<Vec<usize>, Stopped> {
         last.iter().for_each(|&place| self.trials[place].forget_times());
-        for visits in 1..=LAST_VISITS {
+        let start = Instant::now();
+        for visits in 1..=MOST_LAST_VISITS {
             self.visit(&last)?;
             if visits == NOISE_PARTS {
                 let cost = |place: usize| self.trials[place].cost();
                 let least = last.iter().map(|&place| cost(place)).fold(f64::INFINITY, f64::min);
                 last.retain(|&place| cost(place) <= LAST_SLACK * least);
             }
-            if visits >= NOISE_PARTS && (last.len() == 1 || Instant::now() > end) {
+            let is_certain = last.len() == 1 || visits >= LAST_VISITS && start.elapsed() > LEAST_LAST_TIME;
+            if visits >= NOISE_PARTS && (is_certain || Instant::now() > end) {
                 break;
             }
         }
