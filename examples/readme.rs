@@ -10,6 +10,7 @@ use raywalk::measure::records::{Environment, Part, Records};
 use raywalk::measure::summary::Summary;
 use raywalk::measure::sweep::{Effort, Job, View, of_scene};
 use raywalk::measure::{chart, stability};
+use raywalk::picture::PendingFile;
 use raywalk::render::CancelToken;
 use raywalk::scene::{LoadOptions, builtin};
 use raywalk::settings::Settings;
@@ -33,7 +34,24 @@ impl Listener for Quiet {
     fn at(&self, _: u64, _: &str) {}
 }
 
+/// Replaces a file as a whole.
+fn write(path: impl AsRef<Path>, text: &str) -> anyhow::Result<()> {
+    Ok(PendingFile::create(path.as_ref())?.commit(|sink| Ok(sink.write_all(text.as_bytes())?))?)
+}
+
+/// What stands in README.md before and after the table.
+fn around_table(readme: &str) -> anyhow::Result<(&str, &str)> {
+    let (begin, end) = Summary::MARKS;
+    let parts = readme.split_once(begin).zip(readme.split_once(end));
+    let ((before, _), (_, after)) = parts.context("README.md has lost its marks")?;
+    ensure!(before.len() + after.len() < readme.len(), "README.md has its marks in the wrong order");
+    Ok((before, after))
+}
+
 fn main() -> anyhow::Result<()> {
+    let read = || fs::read_to_string("README.md").context("README.md: run this in the folder that holds it");
+    // Before minutes are spent on it.
+    around_table(&read()?)?;
     let scene = Arc::new(builtin(&LoadOptions::default())?);
     let (name, camera_name) = ("gallery (built in)".to_owned(), scene.cameras[0].name.clone());
     let camera = scene.cameras[0].camera;
@@ -49,17 +67,13 @@ fn main() -> anyhow::Result<()> {
     bench.run(&jobs)?;
 
     let summary = Summary::of(&bench.records).context("nothing was measured")?;
-    fs::write("scenes/pictures/methods.json", serde_json::to_string_pretty(&summary)? + "\n")?;
+    write("scenes/pictures/methods.json", &(serde_json::to_string_pretty(&summary)? + "\n"))?;
     for chart in chart::of(&bench.records) {
         if let Some((_, file)) = CHARTS.iter().find(|(beginning, _)| chart.name.starts_with(beginning)) {
-            fs::write(format!("scenes/pictures/{file}.svg"), chart.document())?;
+            write(format!("scenes/pictures/{file}.svg"), &chart.document())?;
         }
     }
-    let readme = fs::read_to_string("README.md").context("README.md: run this in the folder that holds it")?;
-    let (begin, end) = Summary::MARKS;
-    let parts = readme.split_once(begin).zip(readme.split_once(end));
-    let ((before, _), (_, after)) = parts.context("README.md has lost its marks")?;
-    ensure!(before.len() + after.len() < readme.len(), "README.md has its marks in the wrong order");
-    fs::write("README.md", format!("{before}{begin}\n{}{end}{after}", summary.table().markdown()))?;
-    Ok(())
+    let readme = read()?;
+    let ((before, after), (begin, end)) = (around_table(&readme)?, Summary::MARKS);
+    write("README.md", &format!("{before}{begin}\n{}{end}{after}", summary.table().markdown()))
 }

@@ -220,17 +220,26 @@ impl Settings {
         ROWS.iter().filter(move |row| (row.get)(self) != (row.get)(&exact))
     }
 
-    /// The same picture without what approximates it, by a ray for every pixel: what errors are held against.
-    pub fn reference(&self) -> Self {
+    /// The same picture without what approximates it.
+    pub fn without_approximations(&self) -> Self {
         let exact = Self::exact();
         let mut settings = self.clone();
         for row in ROWS {
             if row.promise(&(row.get)(self)) == Some(Promise::Approximate) {
-                // What a row prints it also reads.
-                let _ = (row.set)(&mut settings, &(row.get)(&exact));
+                row.copy(&exact, &mut settings);
             }
         }
-        Self { visibility: Visibility::Full, ..settings }
+        settings
+    }
+
+    /// The same, by a ray for every pixel: what errors are held against.
+    pub fn reference(&self) -> Self {
+        Self { visibility: Visibility::Full, ..self.without_approximations() }
+    }
+
+    /// Changes what `preset` changes of the preset `exact`, in the rows that are `free`.
+    pub fn take_changes(&mut self, preset: &Self, free: impl Fn(&Row) -> bool) {
+        preset.changed().filter(|row| free(row)).for_each(|row| row.copy(preset, self));
     }
 }
 
@@ -333,6 +342,12 @@ impl Row {
             "refine-at-rest" | "target-fps" | "present" => false,
             _ => true,
         }
+    }
+
+    /// Makes this row of `to` what it is in `from`.
+    pub fn copy(&self, from: &Settings, to: &mut Settings) {
+        // What a row prints it also reads.
+        let _ = (self.set)(to, &(self.get)(from));
     }
 
     /// The promise of `value`; `None` when the row does not know the value.

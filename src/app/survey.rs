@@ -1,5 +1,6 @@
 //! What the overlay knows of a search for cheap settings: how far it is, what was measured, what was found.
 
+use crate::measure::front::front;
 use crate::measure::tune::{Bound, Trial, Tuning, Verdict};
 use crate::scene::Camera;
 use crate::settings::{Present, Settings};
@@ -84,18 +85,7 @@ impl Survey {
 
     /// The places of the points that no other is better than in both time and error, the fastest first.
     pub fn front(&self) -> Vec<usize> {
-        let mut places: Vec<usize> = (0..self.points.len()).collect();
-        let point = |place: usize| &self.points[place];
-        places.sort_by(|&a, &b| {
-            point(a).cpu_ms.total_cmp(&point(b).cpu_ms).then(point(a).error.total_cmp(&point(b).error))
-        });
-        let mut least = f64::INFINITY;
-        places.retain(|&place| {
-            let is_better = point(place).error < least;
-            least = least.min(point(place).error);
-            is_better
-        });
-        places
+        front(&self.points.iter().map(|point| (point.cpu_ms, point.error)).collect::<Vec<_>>())
     }
 }
 

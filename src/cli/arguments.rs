@@ -74,22 +74,27 @@ fn bench() -> Command {
     let command = Command::new("bench")
         .about("Measures how fast and how true every method is, and draws it")
         .after_help(
-            "Starts from the preset exact; flags hold for every method. Without --stability or --thesis: a sweep over \
-             settings, optimisations, a walk (--path, or steps aside), and sizes. Reference: --visibility full.",
+            "Starts from the preset exact; flags hold for every method, those that approximate for all but full and exact. Without --stability or --thesis: a sweep over \
+             settings, optimisations, a walk (--path, or steps aside), and sizes. Reference: --visibility full, \
+             without approximations.",
         )
         .arg(scenes)
         .arg(folder)
-        .arg(switch("quick", "Fewer methods, pictures of half the size: under 30 seconds a scene"))
+        .arg(
+            switch("quick", "Fewer methods, pictures of half the size: under 30 seconds a scene")
+                .conflicts_with("thesis"),
+        )
         .arg(
             switch("stability", "Error against difficulty instead: thin wires, far spheres, scales")
-                .conflicts_with_all(["thesis", "scenes"]),
+                .conflicts_with_all(["thesis", "scenes", "size", "camera", "eye", "look-at", "up", "fov", "path"]),
         )
         .arg(switch("thesis", "The thesis's table instead: its methods at 1, 4, 16 and 25 rays a pixel, 640x360"))
-        .arg(switch("redraw", "Measure nothing; draw what the folder's records hold"));
+        .arg(switch("redraw", "Measure nothing; draw what the folder's records hold").conflicts_with("scenes"));
     let again = |help: &'static str| move |arg: Arg| arg.action(ArgAction::Append).help(help);
     with_options(command)
         .mut_arg("camera", again("A camera of the scene, or all of them; may be given again [default: the first]"))
         .mut_arg("path", again("Move the camera along a path; may be given again"))
+        .mut_arg("frames", |arg| arg.requires("path").help("Frames A to B-1 of the path [default: all of it]"))
 }
 
 fn tune() -> Command {

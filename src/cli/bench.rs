@@ -8,9 +8,9 @@ use super::progress::Progress;
 use super::stage::{self, Stage};
 use super::{Failure, stdout};
 use clap::ArgMatches;
-use raywalk::measure::bench::{Bench, Listener};
+use raywalk::measure::bench::{Bench, BenchError, Listener};
 use raywalk::measure::records::{Environment, Records};
-use raywalk::measure::sweep::{Effort, Job, View, by_primitives, of_scene};
+use raywalk::measure::sweep::{Effort, Job, View, affordable_size, by_primitives, of_scene};
 use raywalk::measure::{page, stability, thesis};
 use raywalk::scene::Camera;
 use raywalk::settings::Settings;
@@ -35,31 +35,66 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     let effort = if asked.get_flag("quick") { Effort::QUICK } else { Effort::DEFAULT };
     let mut environment = Environment::here(&options.settings, effort.name);
     let scenes: Vec<&PathBuf> = asked.get_many("scenes").into_iter().flatten().collect();
-    let views = match () {
+    let is_thesis = asked.get_flag("thesis");
+    let mut views = match () {
         () if asked.get_flag("stability") => Vec::new(),
-        () if asked.get_flag("thesis") && scenes.is_empty() => thesis::views()?,
+        () if is_thesis && scenes.is_empty() => thesis::views()?,
         () => views(&scenes, asked, &options)?,
     };
-    for view in &views {
-        environment.views.insert(format!("{}, {}", view.name, view.camera_name), view.fingerprint(&options.settings));
+    if is_thesis {
+        let size = options.view.size.map_or(thesis::SIZE, |size| (size.width, size.height));
+        views.iter_mut().for_each(|view| view.size = size);
     }
+    for view in &views {
+        // The table's pictures have another size than those of a sweep, and may stand beside them.
+        let name = if is_thesis { format!("{} in the thesis's table", view.full_name()) } else { view.full_name() };
+        environment.views.insert(name, view.fingerprint(&options.settings));
+    }
+    let mut records = Records::resume(&folder, environment)?;
     let jobs = if asked.get_flag("stability") {
         stability::jobs(&options.settings, &effort)?
-    } else if asked.get_flag("thesis") {
-        thesis_jobs(views, &options)?
+    } else if is_thesis {
+        views.iter().flat_map(|view| thesis::jobs(view, &options.settings)).collect()
     } else {
+        reduce(&mut views, &mut records.environment, &options, &effort);
         sweep_jobs(&views, &options, &effort)?
     };
 
     interrupt.careful();
-    let records = Records::resume(&folder, environment)?;
     let progress = Progress::over_steps(jobs.iter().map(Job::steps).sum(), options.reading.quiet);
     let teller = Teller(&progress);
     let mut bench = Bench::new(folder.clone(), records, interrupt.token.clone(), &teller);
-    bench.run(&jobs)?;
-    page::draw(&bench.records, &folder)?;
+    let ended = bench.run(&jobs);
+    let records = bench.records;
+    if let Ok(()) | Err(BenchError::Interrupted) = ended {
+        page::draw(&records, &folder)?;
+    }
     drop(progress);
+    let (rows, cut_off) = (records.rows.len(), records.cut_off());
+    if cut_off > 0 && !options.reading.quiet {
+        stdout::note(&format!(
+            "warning: {cut_off} of {rows} rows were cut off, since a frame took too long for a bench"
+        ));
+    }
+    ended?;
     interrupt.check()
+}
+
+/// Makes views smaller whose frames would take too long, as they were when their records were begun.
+fn reduce(views: &mut [View], environment: &mut Environment, options: &Options, effort: &Effort) {
+    for view in views {
+        let known = environment.sizes.get(&view.full_name()).copied();
+        let size = known.unwrap_or_else(|| affordable_size(view, &options.settings, effort));
+        if size != view.size && !options.reading.quiet {
+            let ((width, height), (less_wide, less_high)) = (view.size, size);
+            stdout::note(&format!(
+                "warning: {}: frames of {width}x{height} take too long for a bench; measured at {less_wide}x{less_high}",
+                view.full_name()
+            ));
+        }
+        environment.sizes.insert(view.full_name(), size);
+        view.size = size;
+    }
 }
 
 struct Teller<'a>(&'a Progress);
@@ -75,12 +110,6 @@ fn sweep_jobs(views: &[View], options: &Options, effort: &Effort) -> Result<Vec<
     let mut jobs: Vec<Job> = views.iter().flat_map(|view| of_scene(view, &options.settings, effort)).collect();
     jobs.extend(by_primitives(&options.settings, effort)?);
     Ok(jobs)
-}
-
-/// The jobs of the thesis's table, on its own scenes if none are named.
-fn thesis_jobs(views: Vec<View>, options: &Options) -> Result<Vec<Job>, Failure> {
-    let size = options.view.size.map_or(thesis::SIZE, |size| (size.width, size.height));
-    Ok(views.into_iter().flat_map(|view| thesis::jobs(&View { size, ..view }, &options.settings)).collect())
 }
 
 /// What is looked at: in each scene, from every camera and along every path that were named.

@@ -25,7 +25,11 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     if options.stats.is_some() {
         return Err(Failure::Usage("--stats: tune tells its figures itself; see --json".to_owned()));
     }
-    let bounds: Vec<Bound> = asked.get_many("max-error").into_iter().flatten().copied().collect();
+    if asked.get_one::<String>("preset").is_some_and(|preset| preset != "exact") {
+        let reason = "tune starts from exact and tries the other presets itself; give single flags, which it keeps";
+        return Err(Failure::Usage(format!("--preset: {reason}")));
+    }
+    let bounds = Bound::strictest(asked.get_many::<Bound>("max-error").into_iter().flatten().copied());
     if let Some(bound) = bounds.iter().find(|bound| !bound.can_hold()) {
         return Err(Failure::Run(format!("{bound}: not even equal pictures keep it; choose another bound")));
     }

@@ -10,6 +10,7 @@ pub mod bench;
 pub mod chart;
 pub mod counts;
 pub mod difference;
+pub mod front;
 pub mod metric;
 pub mod motion;
 pub mod page;

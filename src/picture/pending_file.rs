@@ -49,6 +49,15 @@ impl PendingFile {
         Ok(Self { asked: path.to_owned(), target, temporary: Some(temporary), file: Some(BufWriter::new(file)) })
     }
 
+    /// Whether a file of this name may be what a killed run had begun to write.
+    pub fn is_leftover(name: &str) -> bool {
+        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+        let inner = name.strip_prefix('.').and_then(|name| name.strip_suffix(".part"));
+        let parts = inner.and_then(|inner| inner.rsplit_once('.'));
+        let numbers = parts.filter(|(target, _)| !target.is_empty()).and_then(|(_, numbers)| numbers.split_once('-'));
+        numbers.is_some_and(|(process, attempt)| is_number(process) && is_number(attempt))
+    }
+
     /// The name the file will get.
     pub fn path(&self) -> &Path {
         &self.asked
@@ -117,6 +126,19 @@ mod tests {
         pending.commit(|sink| Ok(sink.write_all(b"whole")?)).expect("written");
         assert_eq!(fs::read(&target).expect("there"), b"whole");
         assert_eq!(folder.names(), ["a.png"]);
+    }
+
+    #[test]
+    fn leftovers_are_known_by_their_names() {
+        let folder = Folder::new();
+        let pending = PendingFile::create(&folder.0.join("a.png")).expect("writable");
+        assert!(folder.names().iter().all(|name| PendingFile::is_leftover(name)) && folder.names().len() == 1);
+        drop(pending);
+        for other in
+            ["a.png", ".part", ".a.part", ".film.mkv.part", ".a-1.part", "..7-0.part", ".a.7-.part", "a.7-0.part"]
+        {
+            assert!(!PendingFile::is_leftover(other), "{other}");
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::PictureError;
 use super::transfer::{srgb_decode, srgb_encode};
 use exr::prelude::{MetaData, ReadChannels, ReadLayers};
+use image::ColorType;
 use std::fs::{self, File};
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -97,8 +98,17 @@ fn read_eight_or_sixteen_bit(path: &Path) -> Result<Picture, PictureError> {
     let mut limits = image::Limits::no_limits();
     limits.max_alloc = Some(16 * MAX_PIXELS);
     reader.limits(limits);
-    let image = reader.decode().map_err(decoded)?.into_rgb32f();
-    let pixels = image.as_raw().chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();
+    let image = reader.decode().map_err(decoded)?;
+    // Grey is spread before it is divided, so that it is the same as its three channels written out.
+    let pixels = match image.color() {
+        ColorType::L8 | ColorType::La8 | ColorType::Rgb8 | ColorType::Rgba8 => {
+            image.into_rgb8().pixels().map(|pixel| pixel.0.map(|v| f32::from(v) / 255.0)).collect()
+        }
+        ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => {
+            image.into_rgb16().pixels().map(|pixel| pixel.0.map(|v| f32::from(v) / 65_535.0)).collect()
+        }
+        _ => image.into_rgb32f().pixels().map(|pixel| pixel.0).collect(),
+    };
     Ok(Picture { width, height, pixels, encoding: Encoding::Srgb })
 }
 
@@ -141,6 +151,26 @@ mod tests {
         let picture = read(&folder.write("deep.png", bytes.get_ref())).expect("it is a picture");
         assert_eq!((picture.width, picture.height, picture.encoding), (2, 1, Encoding::Srgb));
         assert_eq!(picture.pixels, [[1.0 / 65_535.0; 3], [1.0; 3]]);
+    }
+
+    #[test]
+    fn grey_is_the_same_as_its_three_channels_written_out() {
+        let folder = Folder::new();
+        let grey = image::GrayImage::from_fn(256, 1, |x, _| image::Luma([x as u8]));
+        let deep = image::ImageBuffer::<image::Luma<u16>, _>::from_fn(4096, 1, |x, _| image::Luma([16 * x as u16 + 5]));
+        let read_back = |name: &str, image: image::DynamicImage| {
+            let mut bytes = std::io::Cursor::new(Vec::new());
+            image.write_to(&mut bytes, image::ImageFormat::Png).expect("memory takes it");
+            read(&folder.write(name, bytes.get_ref())).expect("it is a picture")
+        };
+        for image in [image::DynamicImage::from(grey), image::DynamicImage::from(deep)] {
+            let spread = if image.color() == ColorType::L8 {
+                image::DynamicImage::from(image.to_rgb8())
+            } else {
+                image::DynamicImage::from(image.to_rgb16())
+            };
+            assert_eq!(read_back("grey.png", image), read_back("rgb.png", spread));
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::temporary::Folder;
 use raywalk::measure::bench::{Bench, BenchError, Listener};
 use raywalk::measure::records::{Environment, Part, Records, RecordsError};
 use raywalk::measure::summary::Summary;
-use raywalk::measure::sweep::{Effort, Job, View, of_scene};
+use raywalk::measure::sweep::{Effort, Job, View, affordable_size, by_primitives, of_scene};
 use raywalk::measure::{page, stability, thesis};
 use raywalk::render::CancelToken;
 use raywalk::scene::{Camera, LoadOptions, load_text};
@@ -65,6 +65,20 @@ fn load(folder: &Path) -> Records {
 }
 
 #[test]
+fn errors_are_held_against_a_picture_without_approximations() {
+    let (view, base) = (view(), Settings::fast());
+    let jobs = of_scene(&view, &base, &TINY).into_iter().chain(stability::jobs(&base, &TINY).expect("valid scenes"));
+    let jobs = jobs.chain(thesis::jobs(&view, &base));
+    for job in jobs.chain(by_primitives(&base, &TINY).expect("valid scenes")) {
+        let reference = match &job {
+            Job::Compare(job) => &job.reference.settings,
+            Job::Walk(job) => &job.reference,
+        };
+        assert_eq!(*reference, reference.reference());
+    }
+}
+
+#[test]
 fn a_bench_that_was_stopped_goes_on_and_measures_nothing_twice() {
     let (folder, jobs) = (Folder::new(), jobs());
     let mut last = 0;
@@ -111,6 +125,63 @@ fn records_of_another_machine_or_program_are_not_mixed() {
 }
 
 #[test]
+fn what_others_left_in_a_folder_stays() {
+    let folder = Folder::new();
+    folder.write("index.html", "a page of somebody's");
+    let others = [".film.part", ".records.json.7-0.part"].map(|name| folder.write(name, "half"));
+    assert!(Records::resume(folder.path(), environment()).is_err());
+    assert!(others.iter().all(|file| file.exists()), "a folder that is refused is left alone");
+    Records::new(environment()).save(folder.path()).expect("writable");
+    assert!(Records::resume(folder.path(), environment()).is_ok());
+    assert_eq!(others.map(|file| file.exists()), [true, false], "only our own goes");
+}
+
+#[test]
+fn slow_methods_are_cut_off_and_never_what_they_are_held_against() {
+    let folder = Folder::new();
+    let mut jobs = jobs();
+    jobs.truncate(1);
+    for job in &mut jobs {
+        if let Job::Compare(job) = job {
+            job.longest_frame = Duration::ZERO;
+            job.view.size = (640, 360);
+        }
+    }
+    let records = run(folder.path(), &jobs, u64::MAX).expect("nothing stops it");
+    let measures = || records.rows.iter().filter(|row| ["full", "exact"].contains(&row.key.method.as_str()));
+    assert_eq!(measures().count(), 2);
+    assert!(measures().all(|row| row.cut_off_ms.is_none() && !row.error.is_empty()));
+    page::draw(&records, folder.path()).expect("writable");
+    assert!(fs::read_to_string(folder.path().join("index.html")).expect("written").contains("Time against error"));
+}
+
+#[test]
+fn a_view_that_is_slow_is_measured_smaller() {
+    let (view, base) = (View { size: (1280, 720), ..view() }, Settings::exact());
+    let patient = Effort { scene: Duration::from_secs(3600), ..TINY };
+    assert_eq!(affordable_size(&view, &base, &patient), (1280, 720));
+    let hasty = Effort { scene: Duration::from_micros(1), ..TINY };
+    assert_eq!(affordable_size(&view, &base, &hasty), (80, 45));
+}
+
+#[test]
+fn the_table_of_records_is_as_new_as_they_are() {
+    let (folder, jobs) = (Folder::new(), jobs());
+    assert!(matches!(run(folder.path(), &jobs, 25), Err(BenchError::Interrupted)));
+    let csv = fs::read_to_string(folder.path().join("records.csv")).expect("written");
+    assert_eq!(csv.lines().count(), 1 + load(folder.path()).rows.len());
+}
+
+#[test]
+fn names_that_no_chart_can_hold_lose_none() {
+    let folder = Folder::new();
+    let mut jobs = of_scene(&View { name: "a\u{1}\u{fffe}b".to_owned(), ..view() }, &Settings::exact(), &TINY);
+    jobs.truncate(1);
+    let records = run(folder.path(), &jobs, u64::MAX).expect("nothing stops it");
+    page::draw(&records, folder.path()).expect("every chart can be drawn");
+}
+
+#[test]
 fn records_of_another_picture_are_not_mixed() {
     let folder = Folder::new();
     let print = |view: &View| view.fingerprint(&Settings::exact());
@@ -123,6 +194,10 @@ fn records_of_another_picture_are_not_mixed() {
     now.views.insert("a room, default".to_owned(), print(&moved));
     let refused = Records::resume(folder.path(), now).expect_err("another view").to_string();
     assert!(refused.contains("version of a room, default"), "{refused}");
+    let mut larger = environment();
+    larger.views.insert("a room, default".to_owned(), print(&View { size: (256, 144), ..view() }));
+    let refused = Records::resume(folder.path(), larger).expect_err("another size").to_string();
+    assert!(refused.contains("128x72") && refused.contains("256x144"), "{refused}");
 }
 
 #[test]
@@ -220,4 +295,13 @@ fn the_thesis_table_has_its_layout() {
     let errors = &table.rows[0][table.head.len() - 2];
     assert!(errors.starts_with("every method: ") && errors.ends_with("/ 0"), "{errors}");
     assert_eq!(table.rows[0].last().map(String::as_str), Some("none"));
+
+    let mut two = records.clone();
+    two.rows.extend(records.rows.iter().cloned().map(|mut row| {
+        row.key.camera = "above".to_owned();
+        row
+    }));
+    let table = thesis::table(&two).expect("there are rows");
+    assert_eq!(table.rows.len(), 2 + thesis::PUBLISHED.len());
+    assert!(table.rows[2][0].contains("above"), "{}", table.rows[2][0]);
 }

@@ -125,4 +125,5 @@ fn wrong_usage_of_tune_is_exit_2() {
     let said = bench.refused(2, "tune --max-error speed=1");
     assert!(METRICS.iter().all(|metric| said.contains(metric.name)), "{said}");
     assert!(bench.refused(2, "tune --max-error flip=1 --stats -").contains("--json"));
+    assert!(bench.refused(2, "tune --max-error flip=1 --preset fast").contains("--preset"));
 }

@@ -83,7 +83,9 @@ fn bound_row(ui: &mut Ui, bound: Bound, changes: &mut Vec<Change>) {
         let sign = ui.label(RichText::new(if bound.metric.is_higher_better() { "at least" } else { "at most" }));
         let mut limit = bound.limit;
         let speed = 0.01 * limit.abs().max(1e-4);
-        let drag = DragValue::new(&mut limit).speed(speed).range(0.0..=f64::MAX);
+        // Beyond what equal pictures have nothing could hold.
+        let most = if bound.metric.is_higher_better() { bound.metric.best.min(f64::MAX) } else { f64::MAX };
+        let drag = DragValue::new(&mut limit).speed(speed).range(0.0..=most);
         let drag = drag.custom_formatter(|limit, _| short(limit));
         if ui.add(drag).labelled_by(sign.id).changed() {
             changes.push(Change::Bound(Bound { limit, ..bound }));

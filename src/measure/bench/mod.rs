@@ -66,7 +66,6 @@ impl<'a> Bench<'a> {
                 Job::Compare(job) => self.compare(job)?,
                 Job::Walk(job) => self.walk(job)?,
             }
-            self.records.save_csv(&self.folder)?;
             self.done = end;
             self.listener.at(self.done, job.scene_name());
         }

@@ -27,7 +27,7 @@ fn chart(view: (&str, &str), rows: &[&Row], kind: &str, axis: &str) -> Option<Ch
     timed.sort_by(|a, b| a.key.at.unwrap_or_default().total_cmp(&b.key.at.unwrap_or_default()));
     for row in &timed {
         let at = row.key.at?;
-        let told = format!("{} ms for {} {kind}", short(row.frame_ms.median), short(at));
+        let told = format!("{}: {} ms for {} {kind}", row.key.method, short(row.frame_ms.median), short(at));
         Line::add(&mut lines, &row.family, &row.key.method, (at, row.frame_ms.median, told));
     }
     let first = timed.first()?;

@@ -48,7 +48,7 @@ pub fn draw(svg: &mut Svg, area: &Area, lines: &[Line], x: &Axis, y: &dyn Fn(usi
     for (line, points) in lines.iter().zip(&placed) {
         if line.points.len() <= 20 {
             for (&point, (.., told)) in points.iter().zip(&line.points) {
-                svg.mark(point, &line.family, false, &format!("{}: {told}", line.name), None);
+                svg.mark(point, &line.family, false, told, None);
             }
         }
     }

@@ -64,7 +64,8 @@ impl Chart {
         let document = self.document();
         let file = PendingFile::create(&folder.join(format!("{}.svg", self.name)))?;
         file.commit(|sink| Ok(sink.write_all(document.as_bytes())?))?;
-        let picture = png::rasterised(&document).map_err(PictureError::Encode)?;
+        let named = |message| PictureError::Encode(format!("{}: {message}", self.name));
+        let picture = png::rasterised(&document).map_err(named)?;
         let path = folder.join(format!("{}.png", self.name));
         let format = crate::picture::Format::of(&path)?;
         Ok(PendingFile::create(&path)?.commit(|sink| format.write_eight_bit(&picture, sink))?)

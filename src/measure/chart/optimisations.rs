@@ -11,6 +11,7 @@ use crate::measure::sweep::OPTIMISATIONS;
 
 const WIDTH: f64 = 980.0;
 const GROUP: f64 = 54.0;
+const ROOM_FOR_FACTOR: f64 = 64.0;
 
 /// How many times slower one run is than another: by the medians, and the range that their spread leaves open.
 struct Factor {
@@ -29,13 +30,14 @@ pub fn charts(records: &Records) -> Vec<Chart> {
 fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
     let named = |name: &str| rows.iter().copied().find(|row| row.key.method == name);
     let (all, none) = (named("all")?, named("none")?);
-    let bars: Vec<(&str, [Option<Factor>; 2])> = OPTIMISATIONS
+    let bars: Vec<(&str, [Result<Factor, &str>; 2])> = OPTIMISATIONS
         .iter()
         .map(|(name, _)| {
             let time =
                 if *name == "threads" { |row: &Row| row.frame_ms.clone() } else { |row: &Row| row.cpu_ms.clone() };
-            let alone = named(&format!("only {name}")).and_then(|only| factor(none, only, time));
-            let without = named(&format!("without {name}")).and_then(|without| factor(without, all, time));
+            let alone = named(&format!("only {name}")).ok_or(NOT_MEASURED).and_then(|only| factor(none, only, time));
+            let without =
+                named(&format!("without {name}")).ok_or(NOT_MEASURED).and_then(|without| factor(without, all, time));
             (*name, [alone, without])
         })
         .collect();
@@ -55,7 +57,8 @@ fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
     let area = Area { left: 190.0, top: 102.0, right: WIDTH - 90.0, bottom: size.1 - 56.0 };
     let factors = bars.iter().flat_map(|(_, pair)| pair.iter().flatten());
     let ends = factors.flat_map(|factor| [factor.low, factor.high, factor.median]).chain([0.8, 2.0]);
-    let x = Axis::logarithmic(ends, area.left, area.right);
+    // The factor stands behind its bar.
+    let x = Axis::logarithmic(ends, area.left, area.right - ROOM_FOR_FACTOR);
     area.axis_below(&mut svg, &x, "times as fast, logarithmic (1: makes no difference)");
     for (i, (class, text)) in
         [("part s2", "gained by it alone, all others off"), ("part s4", "lost without it, all others on")]
@@ -71,9 +74,12 @@ fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
         svg.text(area.left - 10.0, top + 24.0, Anchor::End, "", name);
         for (j, factor) in pair.iter().enumerate() {
             let top = top + 21.0 * j as f64;
-            let Some(factor) = factor else {
-                svg.text(x.at(1.0) + 6.0, top + 14.0, Anchor::Start, "tick", "took too long to tell");
-                continue;
+            let factor = match factor {
+                Ok(factor) => factor,
+                Err(reason) => {
+                    svg.text(x.at(1.0) + 6.0, top + 14.0, Anchor::Start, "tick", reason);
+                    continue;
+                }
             };
             let (one, end) = (x.at(1.0), x.at(factor.median));
             let sign = if factor.at_least { "> " } else { "" };
@@ -96,22 +102,29 @@ fn chart(view: (&str, &str), rows: &[&Row]) -> Option<Chart> {
     Some(Chart { name: file_name("optimisations", view), section: view_title(view), title, size, body: svg.0 })
 }
 
-fn factor(slow: &Row, fast: &Row, time: fn(&Row) -> Samples) -> Option<Factor> {
+/// Why there is no factor.
+const NOT_MEASURED: &str = "not measured";
+const TOO_SLOW: &str = "took too long to tell";
+
+fn factor(slow: &Row, fast: &Row, time: fn(&Row) -> Samples) -> Result<Factor, &'static str> {
     let (slow_ms, fast_ms) = (time(slow), time(fast));
     if fast_ms.is_empty() {
-        return None;
+        return Err(if fast.cut_off_ms.is_some() { TOO_SLOW } else { NOT_MEASURED });
     }
     if let Some(cut_off) = slow.cut_off_ms {
         // Of what was cut off only the clock is known, which is no more than the CPU time of a frame on one thread.
         let least = cut_off / fast_ms.median;
-        return Some(Factor { median: least, low: least, high: least, at_least: true });
+        return Ok(Factor { median: least, low: least, high: least, at_least: true });
     }
     let quartile = |samples: &Samples, q: f64| {
         let mut sorted = samples.samples.clone();
         sorted.sort_by(f64::total_cmp);
         percentile(&sorted, q).unwrap_or_default()
     };
-    (!slow_ms.is_empty()).then(|| Factor {
+    if slow_ms.is_empty() {
+        return Err(NOT_MEASURED);
+    }
+    Ok(Factor {
         median: slow_ms.median / fast_ms.median,
         low: quartile(&slow_ms, 0.25) / quartile(&fast_ms, 0.75),
         high: quartile(&slow_ms, 0.75) / quartile(&fast_ms, 0.25),

@@ -1,17 +1,19 @@
 //! Colours and marks. Okabe and Ito's colours (2008), which the colour-blind tell apart; families differ in their mark,
 //! and lines of one family in their dashes, so that no reading hangs on colour alone.
 
-/// The style of every chart. Class `fN` colours a family, `sN` a part of a stack.
+/// The style of every chart. Class `fN` colours a family, `sN` a part of a stack; `hit` is not seen, but tells what it is when
+/// pointed at. What only stands beside marks lets the pointer through to them.
 pub const STYLE: &str = "\
 text{font-family:sans-serif;font-size:13px;fill:#222}
 .title{font-size:17px}.note{font-size:12px;fill:#555}.tick{font-size:12px;fill:#444}
 .paper{fill:#fff}.frame{fill:none;stroke:#777}.grid{stroke:#ddd;stroke-width:1}.faintgrid{stroke:#eee}
-.band{fill:#eef3ee}.axis{stroke:#777}.leader{stroke:#999;stroke-width:0.8}
+.band{fill:#eef3ee}.axis{stroke:#777}.leader{stroke:#999;stroke-width:0.8;stroke-dasharray:1 3}
 .f0{fill:#000;stroke:#000}.f1{fill:#0072b2;stroke:#0072b2}.f2{fill:#009e73;stroke:#009e73}.f3{fill:#e69f00;stroke:#e69f00}
 .f4{fill:#d55e00;stroke:#d55e00}.f5{fill:#cc79a7;stroke:#cc79a7}.f6{fill:#56b4e9;stroke:#56b4e9}
 .s0{fill:#440154}.s1{fill:#443983}.s2{fill:#31688e}.s3{fill:#21918c}.s4{fill:#35b779}.s5{fill:#90d743}.s6{fill:#fde725}.s7{fill:#bbb}
 .part{stroke:#fff;stroke-width:0.7}.line{fill:none;stroke-width:2}.front{fill:none;stroke:#777;stroke-width:1.5;stroke-dasharray:5 3}
-.whisker{stroke-width:1.3}.faint{opacity:0.35}";
+.whisker{stroke-width:1.3}.faint{opacity:0.35}
+.whisker,.leader,.line,.front,text{pointer-events:none}.point text{pointer-events:auto}.hit{fill:none;pointer-events:all}";
 
 /// What changes on a dark page.
 pub const DARK: &str = "\

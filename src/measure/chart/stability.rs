@@ -30,7 +30,7 @@ fn chart(records: &Records, difficulty: &Difficulty) -> Option<Chart> {
     }
     for row in &rows {
         let Some((at, share)) = row.key.at.zip(row.error(WRONG_SHARE)) else { continue };
-        let told = format!("{} % wrong at {}", short(share), short(at));
+        let told = format!("{}: {} % wrong at {}", row.key.method, short(share), short(at));
         Line::add(&mut lines, &row.family, &row.key.method, (at, share, told));
     }
     lines.retain(|line| !line.points.is_empty());
@@ -55,7 +55,9 @@ fn chart(records: &Records, difficulty: &Difficulty) -> Option<Chart> {
         Axis::logarithmic(points().map(|(_, share, _)| *share), errors.bottom - 6.0, errors.top + 10.0).up_to(100.0);
     svg.rectangle(area.left, errors.bottom, area.right - area.left, band, "band");
     area.axis_below(&mut svg, &x, difficulty.axis);
-    errors.axis_left(&mut svg, &y, "visibly wrong pixels [%], logarithmic");
+    if points().any(|(_, share, _)| *share > 0.0) {
+        errors.axis_left(&mut svg, &y, "visibly wrong pixels [%], logarithmic");
+    }
     svg.text(area.left - 8.0, errors.bottom + band / 2.0 + 4.0, Anchor::End, "tick", "none");
     area.frame(&mut svg);
     // Lines without an error run side by side, so that each can be seen.

@@ -15,8 +15,14 @@ pub enum Anchor {
 #[derive(Clone, Debug, Default)]
 pub struct Svg(pub String);
 
-/// Text with the signs that XML keeps for itself replaced.
+/// Text with the signs that XML keeps for itself replaced, and those that it does not allow at all (XML 1.0, 2.2).
 pub fn escaped(text: &str) -> String {
+    let allowed = |c: char| match c {
+        '\t' | '\n' | '\r' => c,
+        '\0'..' ' | '\u{fffe}' | '\u{ffff}' => char::REPLACEMENT_CHARACTER,
+        _ => c,
+    };
+    let text: String = text.chars().map(allowed).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
@@ -120,21 +126,44 @@ impl Svg {
     }
 
     /// The mark of a family at (x, y), which tells what it is when pointed at. `point` names it on the page.
-    pub fn mark(&mut self, (x, y): (f64, f64), family: &str, faint: bool, told: &str, point: Option<usize>) {
+    pub fn mark(&mut self, at: (f64, f64), family: &str, faint: bool, told: &str, point: Option<usize>) {
+        self.named_mark(at, family, faint, told, point, "");
+    }
+
+    /// The same with a name behind it that can be pointed at as well.
+    pub fn named_mark(
+        &mut self,
+        (x, y): (f64, f64),
+        family: &str,
+        faint: bool,
+        told: &str,
+        point: Option<usize>,
+        name: &str,
+    ) {
         let faint = if faint { " faint" } else { "" };
         let point = point.map(|point| format!(r#" data-point="{point}" tabindex="0""#)).unwrap_or_default();
         self.add(format_args!(
-            r#"<g class="point"{point}><title>{}</title><path class="{}{faint}" transform="translate({x:.1} {y:.1})" d="{}"/></g>"#,
+            r#"<g class="point"{point}><title>{}</title><path class="{}{faint}" transform="translate({x:.1} {y:.1})" d="{}"/>"#,
             escaped(told),
             class(family),
             mark(family)
         ));
+        if !name.is_empty() {
+            self.text(x + 12.0, y + 4.5, Anchor::Start, "", name);
+        }
+        self.add(format_args!("</g>"));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn texts_hold_only_what_xml_allows() {
+        assert_eq!(escaped("a\u{1}b\n<\u{ffff}&>"), "a\u{fffd}b\n&lt;\u{fffd}&amp;&gt;");
+        assert!(!document((9.0, 9.0), "\0", "").contains('\0'));
+    }
 
     #[test]
     fn long_texts_are_broken_between_words_and_nothing_is_lost() {

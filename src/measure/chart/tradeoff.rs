@@ -7,6 +7,7 @@ use super::number::short;
 use super::palette::class;
 use super::svg::{Anchor, Svg};
 use super::{Chart, by_view, file_name, view_title};
+use crate::measure::front::front;
 use crate::measure::records::{Part, Records, Row};
 
 const WIDTH: f64 = 880.0;
@@ -17,10 +18,20 @@ const STRIDE: f64 = 490.0;
 /// Height of one line within the rows for what has no error at all.
 const EXACT_LINE: f64 = 17.0;
 
-/// A metric's panel: its name, its axis title, and what an error of 0 is called.
-const PANELS: [(&str, &str, &str); 2] = [
-    ("flip", "mean FLIP [0 to 1, logarithmic]", "exact"),
-    ("pixels_off", "visibly wrong pixels [%, logarithmic]", "none"),
+/// A metric's panel.
+struct Panel {
+    metric: &'static str,
+    /// The title of its axis.
+    title: &'static str,
+    /// The greatest error there can be.
+    most: f64,
+    /// What an error of 0 is called.
+    none: &'static str,
+}
+
+const PANELS: [Panel; 2] = [
+    Panel { metric: "flip", title: "mean FLIP [0 to 1, logarithmic]", most: 1.0, none: "exact" },
+    Panel { metric: "pixels_off", title: "visibly wrong pixels [%, logarithmic]", most: 100.0, none: "none" },
 ];
 
 /// One chart for every view that settings were swept on.
@@ -39,7 +50,7 @@ pub fn charts(records: &Records) -> Vec<Chart> {
         );
         let size = (WIDTH, 108.0 + STRIDE * PANELS.len() as f64 - 48.0);
         let mut svg = Svg::on_paper(size, &title, &note);
-        for (i, panel) in PANELS.into_iter().enumerate() {
+        for (i, panel) in PANELS.iter().enumerate() {
             let top = 108.0 + STRIDE * i as f64;
             let area = Area { left: 86.0, top, right: WIDTH - ROOM_FOR_NAMES, bottom: top + PANEL };
             draw_panel(&mut svg, area, records, &rows, panel);
@@ -56,7 +67,8 @@ fn error_of(row: &Row, metric: &str) -> Option<f64> {
     Some(if metric == "pixels_off" { 100.0 * error / pixels } else { error })
 }
 
-fn draw_panel(svg: &mut Svg, area: Area, records: &Records, rows: &[&Row], (metric, title, none): (&str, &str, &str)) {
+fn draw_panel(svg: &mut Svg, area: Area, records: &Records, rows: &[&Row], panel: &Panel) {
+    let Panel { metric, title, most, none } = *panel;
     let points: Vec<(&Row, f64)> = rows.iter().filter_map(|row| Some((*row, error_of(row, metric)?))).collect();
     let times = points.iter().flat_map(|(row, _)| [row.frame_ms.p5, row.frame_ms.median, row.frame_ms.p95]);
     let x = Axis::logarithmic(times, area.left + 8.0, area.right - 8.0);
@@ -64,7 +76,8 @@ fn draw_panel(svg: &mut Svg, area: Area, records: &Records, rows: &[&Row], (metr
     let exact: Vec<&Row> = points.iter().filter(|(_, error)| *error == 0.0).map(|(row, _)| *row).collect();
     let band = EXACT_LINE * (exact.len() as f64 + 1.0);
     let errors = Area { bottom: area.bottom - band, ..area };
-    let y = Axis::logarithmic(points.iter().map(|(_, error)| *error), errors.bottom - 10.0, errors.top + 10.0);
+    let y =
+        Axis::logarithmic(points.iter().map(|(_, error)| *error), errors.bottom - 10.0, errors.top + 10.0).up_to(most);
     let place = |row: &Row, error: f64| {
         let line = exact.iter().position(|other| std::ptr::eq(*other, row)).unwrap_or_default() as f64;
         let height = if error > 0.0 { y.at(error) } else { errors.bottom + EXACT_LINE * (line + 1.0) };
@@ -73,20 +86,23 @@ fn draw_panel(svg: &mut Svg, area: Area, records: &Records, rows: &[&Row], (metr
 
     svg.rectangle(area.left, errors.bottom, area.right - area.left, band, "band");
     area.axis_below(svg, &x, "median time of a frame [ms], logarithmic");
-    errors.axis_left(svg, &y, title);
+    if exact.len() < points.len() {
+        errors.axis_left(svg, &y, title);
+    }
     svg.text(area.left - 8.0, errors.bottom + band / 2.0 + 4.0, Anchor::End, "tick", none);
     speed_ups(svg, &area, &x, rows);
     area.frame(svg);
 
-    let front = front(&points);
+    let front = front(&points.iter().map(|(row, error)| (row.frame_ms.median, *error)).collect::<Vec<_>>());
     let corners: Vec<(f64, f64)> = front.iter().map(|&i| place(points[i].0, points[i].1)).collect();
     svg.polyline(&corners, "front", "none");
     let places: Vec<(f64, f64)> = points.iter().map(|&(row, error)| place(row, error)).collect();
     // Names stand in a column, so that none covers another whatever the points do.
     let wanted: Vec<f64> = places.iter().map(|(_, y)| *y).collect();
     let heights = spread_out(&wanted, area.top + 4.0, area.bottom - 4.0);
-    for (at, height) in places.iter().zip(&heights) {
-        svg.line((at.0 + 7.0, at.1), (area.right + 14.0, *height), "leader");
+    for ((row, _), (at, height)) in points.iter().zip(places.iter().zip(&heights)) {
+        // Clear of the whisker, so that none seems to reach to the name.
+        svg.line((x.at(row.frame_ms.p95).max(at.0) + 7.0, at.1), (area.right + 14.0, *height), "leader");
     }
     for (i, (&(row, _), (&at, height))) in points.iter().zip(places.iter().zip(heights)).enumerate() {
         let faint = !front.contains(&i);
@@ -96,8 +112,7 @@ fn draw_panel(svg: &mut Svg, area: Area, records: &Records, rows: &[&Row], (metr
         svg.line((ends.0, at.1), (ends.1, at.1), &format!("{family} whisker{shade}"));
         let number = records.rows.iter().position(|other| std::ptr::eq(other, row));
         svg.mark(at, &row.family, faint, &told(row), number);
-        svg.mark((area.right + 22.0, height), &row.family, faint, &told(row), None);
-        svg.text(area.right + 34.0, height + 4.5, Anchor::Start, "", &row.key.method);
+        svg.named_mark((area.right + 22.0, height), &row.family, faint, &told(row), number, &row.key.method);
     }
 }
 
@@ -119,20 +134,6 @@ fn speed_ups(svg: &mut Svg, area: &Area, x: &Axis, rows: &[&Row]) {
             last = at;
         }
     }
-}
-
-/// What nothing beats in both time and error, by time.
-fn front(points: &[(&Row, f64)]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    let time = |i: usize| points[i].0.frame_ms.median;
-    order.sort_by(|&a, &b| time(a).total_cmp(&time(b)).then(points[a].1.total_cmp(&points[b].1)));
-    let mut least = f64::INFINITY;
-    order.retain(|&i| {
-        let better = points[i].1 < least;
-        least = least.min(points[i].1);
-        better
-    });
-    order
 }
 
 /// What is told of a point.

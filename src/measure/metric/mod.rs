@@ -285,6 +285,23 @@ mod tests {
     }
 
     #[test]
+    fn similarity_of_bright_light_stays_a_similarity() {
+        let bright = |level: f32, noise: f32| Picture {
+            width: 24,
+            height: 24,
+            pixels: (0..24 * 24).map(|i| [level + noise * ((i * 7 % 11) as f32 - 5.0); 3]).collect(),
+            encoding: Encoding::Linear,
+        };
+        for level in [1.0, 3000.0, 1e6, 1e30] {
+            let pair = Pair::new(bright(level, 0.0), bright(level, 0.1), Encoding::Linear).expect("equal sizes");
+            let score = number(ssim::ssim(&pair));
+            assert!((-1.0..=1.0).contains(&score), "{level}: {score}");
+            let same = Pair::new(bright(level, 0.1), bright(level, 0.1), Encoding::Linear).expect("equal sizes");
+            assert_eq!(number(ssim::ssim(&same)), 1.0, "{level}");
+        }
+    }
+
+    #[test]
     fn pictures_of_other_sizes_are_refused_with_both_sizes() {
         let picture =
             |width| Picture { width, height: 1, pixels: vec![[0.0; 3]; width as usize], encoding: Encoding::Srgb };

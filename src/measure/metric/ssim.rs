@@ -8,8 +8,8 @@ use super::{Pair, Score};
 const RADIUS: usize = 5;
 const SIGMA: f64 = 1.5;
 /// The paper's stabilisers (K L)² with K1 = 0.01, K2 = 0.03 and a range L of 1.
-const C1: f32 = 0.01 * 0.01;
-const C2: f32 = 0.03 * 0.03;
+const C1: f64 = 0.01 * 0.01;
+const C2: f64 = 0.03 * 0.03;
 
 /// Mean SSIM of luma (Rec. 601 weights on the encoded values, as the authors' program), over the pixels whose
 /// whole window lies in the picture. Undefined for pictures smaller than the window.
@@ -18,12 +18,13 @@ pub(super) fn ssim(pair: &Pair) -> Score {
     if width.min(height) < 2 * RADIUS + 1 {
         return Score::Undefined;
     }
-    let plane = |values: Vec<f32>| Plane { width, height, values };
+    // Variances are differences of large numbers where light is bright: single precision would leave nothing of them.
+    let plane = |values: Vec<f64>| Plane { width, height, values };
     let a = plane(pair.pixels().map(|(a, _)| luma(a)).collect());
     let b = plane(pair.pixels().map(|(_, b)| luma(b)).collect());
 
     let window = normalized(&gaussian(SIGMA, RADIUS));
-    let mean = |value: &dyn Fn(usize) -> f32| Plane::from_fn(width, height, value).filtered(&window, &window);
+    let mean = |value: &dyn Fn(usize) -> f64| Plane::from_fn(width, height, value).filtered(&window, &window);
     let mean_a = a.filtered(&window, &window).values;
     let mean_b = b.filtered(&window, &window).values;
     let mean_aa = mean(&|i| a.values[i] * a.values[i]).values;
@@ -32,11 +33,13 @@ pub(super) fn ssim(pair: &Pair) -> Score {
 
     let at = |i: usize| {
         let (ma, mb) = (mean_a[i], mean_b[i]);
-        let (variance_a, variance_b) = (mean_aa[i] - ma * ma, mean_bb[i] - mb * mb);
-        let covariance = mean_ab[i] - ma * mb;
+        let (variance_a, variance_b) = ((mean_aa[i] - ma * ma).max(0.0), (mean_bb[i] - mb * mb).max(0.0));
+        // What rounding leaves keeps to Cauchy and Schwarz, and so the score to -1 to 1.
+        let most = (variance_a * variance_b).sqrt();
+        let covariance = (mean_ab[i] - ma * mb).clamp(-most, most);
         let luminance = (2.0 * ma * mb + C1) / (ma * ma + mb * mb + C1);
         let structure = (2.0 * covariance + C2) / (variance_a + variance_b + C2);
-        f64::from(luminance) * f64::from(structure)
+        luminance * structure
     };
     let (mut sum, mut count) = (0.0, 0_u64);
     for y in RADIUS..height - RADIUS {
@@ -48,6 +51,7 @@ pub(super) fn ssim(pair: &Pair) -> Score {
     Score::Number(sum / count as f64)
 }
 
-fn luma([r, g, b]: [f32; 3]) -> f32 {
+fn luma(rgb: [f32; 3]) -> f64 {
+    let [r, g, b] = rgb.map(f64::from);
     0.299 * r + 0.587 * g + 0.114 * b
 }

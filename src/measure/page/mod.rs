@@ -18,17 +18,16 @@ const SCRIPT: &str = include_str!("page.js");
 /// Draws everything that `records` hold into `folder`: charts, tables, and `index.html`.
 ///
 /// # Errors
-/// [`RecordsError::Write`]. Pictures that are missing are left out of the page.
+/// [`RecordsError::Write`]: the first, when all else is drawn. Pictures that are missing are left out of the page.
 pub fn draw(records: &Records, folder: &Path) -> Result<(), RecordsError> {
     let charts = chart::of(records);
-    for chart in &charts {
-        chart.write(folder)?;
-    }
+    let written: Vec<_> = charts.iter().map(|chart| chart.write(folder)).collect();
     if let Some(table) = thesis::table(records) {
         write(&folder.join("thesis.md"), &table.markdown())?;
     }
     records.save_csv(folder)?;
-    write(&folder.join("index.html"), &html(records, &charts, folder))
+    write(&folder.join("index.html"), &html(records, &charts, folder))?;
+    written.into_iter().collect()
 }
 
 fn write(path: &Path, text: &str) -> Result<(), RecordsError> {

@@ -32,6 +32,9 @@ pub struct Environment {
     pub flags: String,
     /// A fingerprint of what is to be seen in each view of a scene.
     pub views: BTreeMap<String, String>,
+    /// Width and height at which the views of sweeps are measured: less than was asked for where frames take too long.
+    #[serde(default)]
+    pub sizes: BTreeMap<String, (u32, u32)>,
 }
 
 impl Environment {
@@ -49,6 +52,7 @@ impl Environment {
             effort: effort.to_owned(),
             flags: base.flags(),
             views: BTreeMap::new(),
+            sizes: BTreeMap::new(),
         }
     }
 

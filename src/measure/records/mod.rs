@@ -109,11 +109,6 @@ impl Records {
     pub fn resume(folder: &Path, environment: Environment) -> Result<Self, RecordsError> {
         let io = |source| RecordsError::Io { path: folder.to_owned(), source };
         fs::create_dir_all(folder).map_err(io)?;
-        for folder in [folder.to_owned(), folder.join("pictures")] {
-            if folder.is_dir() {
-                remove_leftovers(&folder).map_err(io)?;
-            }
-        }
         let Some(mut records) = Self::load(folder)? else {
             let foreign = ["index.html", "records.csv", "pictures"].map(|name| folder.join(name));
             return match foreign.into_iter().find(|path| path.exists()) {
@@ -124,21 +119,28 @@ impl Records {
         if let Some((what, before, now)) = records.environment.difference(&environment) {
             return Err(RecordsError::Differs { path: Self::file(folder), what, before, now });
         }
+        // Now the folder is known to be ours.
+        for folder in [folder.to_owned(), folder.join("pictures")] {
+            if folder.is_dir() {
+                remove_leftovers(&folder).map_err(io)?;
+            }
+        }
         records.environment.views.extend(environment.views);
         Ok(records)
     }
 
-    /// Replaces `records.json` in `folder`; whoever reads it meets the old file or the new one.
+    /// Replaces `records.json` in `folder`, and `records.csv`; whoever reads them meets the old file or the new one.
     ///
     /// # Errors
     /// [`RecordsError::Write`].
     pub fn save(&self, folder: &Path) -> Result<(), RecordsError> {
         let file = PendingFile::create(&Self::file(folder))?;
         let encode_error = |error: serde_json::Error| PictureError::Encode(error.to_string());
-        Ok(file.commit(|sink| {
+        file.commit(|sink| {
             serde_json::to_writer_pretty(&mut *sink, self).map_err(encode_error)?;
             Ok(writeln!(sink)?)
-        })?)
+        })?;
+        self.save_csv(folder)
     }
 
     /// Writes `records.csv` in `folder`, a line a row under one line of names.
@@ -156,6 +158,11 @@ impl Records {
             self.rows.push(new());
             self.rows.len() - 1
         })
+    }
+
+    /// How many rows were cut off, because a frame took too long.
+    pub fn cut_off(&self) -> usize {
+        self.rows.iter().filter(|row| row.cut_off_ms.is_some()).count()
     }
 
     /// The rows of one part.
@@ -186,7 +193,7 @@ fn remove_leftovers(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        if name.starts_with('.') && name.ends_with(".part") && path.is_file() {
+        if PendingFile::is_leftover(name) && path.is_file() {
             fs::remove_file(path)?;
         }
     }

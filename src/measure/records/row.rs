@@ -51,9 +51,9 @@ impl PartialEq for Key {
             (Some(a), Some(b)) => near(a, b),
             (a, b) => a == b,
         };
-        let names = |key: &Self| (key.part, key.width, key.height);
+        let part_and_size = |key: &Self| (key.part, key.width, key.height);
         same_place
-            && names(self) == names(other)
+            && part_and_size(self) == part_and_size(other)
             && self.method == other.method
             && self.scene == other.scene
             && self.camera == other.camera

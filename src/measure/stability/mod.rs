@@ -7,7 +7,7 @@ mod wires;
 use super::records::Part;
 use super::sweep::{Comparison, Effort, Job, Judge, Reference, View, stability_methods};
 use crate::scene::{LoadOptions, Scene, SceneError, load_text};
-use crate::settings::{Settings, Visibility};
+use crate::settings::Settings;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
@@ -45,7 +45,7 @@ const SIZE: (u32, u32) = (480, 270);
 /// None that the scenes above could cause.
 pub fn jobs(base: &Settings, effort: &Effort) -> Result<Vec<Job>, SceneError> {
     let size = effort.size(SIZE);
-    let full = Settings { visibility: Visibility::Full, ..base.clone() };
+    let full = base.reference();
     let mut jobs = Vec::new();
     for difficulty in DIFFICULTIES {
         let made = |value| difficulty.scene(value, size.1);

@@ -3,7 +3,7 @@
 use super::{Comparison, Effort, Job, Judge, Method, Reference, View};
 use crate::measure::records::Part;
 use crate::scene::{LoadOptions, SceneError, load_text};
-use crate::settings::{Settings, Visibility};
+use crate::settings::Settings;
 use std::fmt::Write;
 use std::sync::Arc;
 use std::time::Duration;
@@ -16,12 +16,12 @@ const COUNTS: [u32; 9] = [10, 30, 100, 300, 1000, 3000, 10_000, 30_000, 100_000]
 /// # Errors
 /// None that `COUNTS` could cause.
 pub fn by_primitives(base: &Settings, effort: &Effort) -> Result<Vec<Job>, SceneError> {
-    let full = Settings { visibility: Visibility::Full, ..base.clone() };
+    let full = base.reference();
     let method =
         |family, name: &str, settings: &Settings| Method { family, name: name.to_owned(), settings: settings.clone() };
     let methods = vec![
         method("full", "full", &full),
-        method("exact", "exact", base),
+        method("exact", "exact", &base.without_approximations()),
         method("hit", "no tree", &Settings { bvh: false, ..full.clone() }),
     ];
     let size = effort.size(SIZE);

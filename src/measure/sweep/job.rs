@@ -49,15 +49,21 @@ impl View {
         self
     }
 
-    /// A short name for what is to be seen: of every camera, and of a small picture from the first. Textures and
-    /// everything else that a scene's file only names count through the picture.
+    /// Its name among the views of an environment.
+    pub fn full_name(&self) -> String {
+        format!("{}, {}", self.name, self.camera_name)
+    }
+
+    /// A short name for what is to be seen: the size, and a number for every camera and a small picture from the first.
+    /// Textures and everything else that a scene's file only names count through the picture.
     pub fn fingerprint(&self, settings: &Settings) -> String {
         let mut hasher = DefaultHasher::new();
         format!("{:?}", self.cameras()).hash(&mut hasher);
         let mut film = Film::new(160, 90, Planes::default());
         render_frame(&self.scene, &self.camera, settings, &mut Scratch::default(), &mut film);
         film.rgba().hash(&mut hasher);
-        format!("{:08x}", hasher.finish() as u32)
+        let (width, height) = self.size;
+        format!("{width}x{height} {:08x}", hasher.finish() as u32)
     }
 }
 
@@ -104,7 +110,7 @@ pub struct Comparison {
     pub rounds: u32,
     /// No new visit starts after this time; each method is looked at once in any case.
     pub budget: Duration,
-    /// A frame that takes longer is cut off, and its method left.
+    /// A frame that takes longer is cut off, and its method left; see [`Method::is_measure`].
     pub longest_frame: Duration,
 }
 

@@ -1,6 +1,6 @@
 //! The methods that benches compare: settings with a name.
 
-use crate::settings::{Fill, PRESETS, Preset, ROWS, Settings, SimdLevel, SphereCache, Visibility};
+use crate::settings::{Fill, Settings, SimdLevel, SphereCache, Visibility};
 
 /// Settings with a name.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +13,13 @@ pub struct Method {
     pub settings: Settings,
 }
 
+impl Method {
+    /// Whether others are held against it: such a frame is waited for, however long it takes.
+    pub fn is_measure(&self) -> bool {
+        matches!(self.name.as_str(), "full" | "exact")
+    }
+}
+
 /// Changes settings.
 pub type Change = fn(&mut Settings);
 
@@ -21,13 +28,13 @@ type Entry = (&'static str, &'static str, Change, bool);
 
 /// What a sweep tries, the reference first.
 const SWEEP: &[Entry] = &[
-    ("full", "full", |s| s.visibility = Visibility::Full, true),
-    ("exact", "exact", |_| (), true),
+    ("full", "full", full, true),
+    ("exact", "exact", exact, true),
     ("exact", "min-weight 1/512", |s| s.min_weight = 1.0 / 512.0, false),
     ("exact", "min-weight 1/64", |s| s.min_weight = 1.0 / 64.0, false),
     ("exact", "min-weight 1/16", |s| s.min_weight = 1.0 / 16.0, false),
     ("thesis cache", "thesis cache", |s| s.sphere_cache = SphereCache::Thesis, true),
-    ("balanced", "balanced", |s| apply("balanced", s), true),
+    ("balanced", "balanced", balanced, true),
     ("balanced", "interpolated light", |s| s.fill = Fill::Color, false),
     ("hit", "hit 2", |s| subsample(s, Fill::Hit, 2), true),
     ("hit", "hit 4", |s| subsample(s, Fill::Hit, 4), false),
@@ -37,31 +44,31 @@ const SWEEP: &[Entry] = &[
     ("color", "color 4", |s| subsample(s, Fill::Color, 4), false),
     ("color", "color 8", |s| subsample(s, Fill::Color, 8), true),
     ("color", "color 16", |s| subsample(s, Fill::Color, 16), true),
-    ("fast", "fast", |s| apply("fast", s), true),
+    ("fast", "fast", fast, true),
 ];
 
 /// What stability curves show.
 const STABILITY: &[Entry] = &[
-    ("full", "full", |s| s.visibility = Visibility::Full, true),
-    ("exact", "exact", |_| (), true),
-    ("balanced", "balanced", |s| apply("balanced", s), true),
+    ("full", "full", full, true),
+    ("exact", "exact", exact, true),
+    ("balanced", "balanced", balanced, true),
     ("hit", "hit 2", |s| subsample(s, Fill::Hit, 2), true),
     ("hit", "hit 4", |s| subsample(s, Fill::Hit, 4), false),
     ("hit", "hit 8", |s| subsample(s, Fill::Hit, 8), true),
     ("hit", "hit 16", |s| subsample(s, Fill::Hit, 16), false),
     ("color", "color 2", |s| subsample(s, Fill::Color, 2), false),
     ("color", "color 8", |s| subsample(s, Fill::Color, 8), true),
-    ("fast", "fast", |s| apply("fast", s), true),
+    ("fast", "fast", fast, true),
     ("thesis cache", "thesis cache", |s| s.sphere_cache = SphereCache::Thesis, true),
 ];
 
 /// What is followed along a path.
 const WALK: &[Entry] = &[
-    ("exact", "exact", |_| (), true),
-    ("balanced", "balanced", |s| apply("balanced", s), true),
+    ("exact", "exact", exact, true),
+    ("balanced", "balanced", balanced, true),
     ("hit", "hit 8", |s| subsample(s, Fill::Hit, 8), true),
     ("color", "color 8", |s| subsample(s, Fill::Color, 8), true),
-    ("fast", "fast", |s| apply("fast", s), true),
+    ("fast", "fast", fast, true),
 ];
 
 /// An optimisation that keeps the picture: its name, and how it is taken away.
@@ -80,16 +87,22 @@ fn subsample(settings: &mut Settings, fill: Fill, stride: u32) {
     settings.stride = stride;
 }
 
-/// Changes what the preset changes.
-fn apply(name: &str, settings: &mut Settings) {
-    let preset = PRESETS.iter().find(|preset| preset.name == name);
-    let wanted = preset.map_or_else(Settings::exact, |preset: &Preset| (preset.settings)());
-    for row in ROWS {
-        if (row.get)(&wanted) != (row.get)(&Settings::exact()) {
-            // What a row prints it also reads.
-            let _ = (row.set)(settings, &(row.get)(&wanted));
-        }
-    }
+/// What errors are held against.
+fn full(settings: &mut Settings) {
+    *settings = settings.reference();
+}
+
+/// Every pixel as `full` has it, whatever else is approximated.
+fn exact(settings: &mut Settings) {
+    *settings = settings.without_approximations();
+}
+
+fn balanced(settings: &mut Settings) {
+    settings.take_changes(&Settings::balanced(), |_| true);
+}
+
+fn fast(settings: &mut Settings) {
+    settings.take_changes(&Settings::fast(), |_| true);
 }
 
 fn made_of(entries: &[Entry], base: &Settings, quick: bool) -> Vec<Method> {
@@ -102,7 +115,7 @@ fn made_of(entries: &[Entry], base: &Settings, quick: bool) -> Vec<Method> {
     wanted.map(method).collect()
 }
 
-/// The methods of a sweep over settings, each `base` with a change.
+/// The methods of a sweep over settings, each `base` with a change; `full` and `exact` without what `base` approximates.
 pub fn sweep_methods(base: &Settings, quick: bool) -> Vec<Method> {
     made_of(SWEEP, base, quick)
 }
@@ -167,5 +180,20 @@ mod tests {
         let fast = methods.iter().find(|method| method.name == "fast").expect("listed");
         assert_eq!(fast.settings, Settings { shadows: false, ..Settings::fast() });
         assert_eq!(base.flags(), "--shadows off");
+    }
+
+    #[test]
+    fn full_and_exact_are_what_they_are_called_whatever_they_begin_from() {
+        let base = Settings { shadows: false, ..Settings::fast() };
+        let exact = Settings { shadows: false, ..Settings::exact() };
+        for methods in [sweep_methods(&base, true), stability_methods(&base, true), walk_methods(&base)] {
+            for method in methods {
+                match method.name.as_str() {
+                    "full" => assert_eq!(method.settings, exact.reference()),
+                    "exact" => assert_eq!(method.settings, exact),
+                    _ => {}
+                }
+            }
+        }
     }
 }

@@ -13,4 +13,4 @@ pub use method::{
     Change, Method, OPTIMISATIONS, optimisations_alone, optimisations_taken_away, stability_methods, sweep_methods,
     walk_methods,
 };
-pub use scene::of_scene;
+pub use scene::{affordable_size, of_scene};

@@ -3,9 +3,10 @@
 use super::method::{optimisations_alone, optimisations_taken_away, sweep_methods, walk_methods};
 use super::{Comparison, Effort, Job, Judge, Method, Reference, View, Walk};
 use crate::measure::records::Part;
+use crate::render::{Film, Planes, Scratch, render_frame};
 use crate::scene::Camera;
-use crate::settings::{Settings, Visibility};
-use std::time::Duration;
+use crate::settings::Settings;
+use std::time::{Duration, Instant};
 
 /// Frames of a walk that no path was given for.
 const STEPS: u32 = 36;
@@ -16,7 +17,7 @@ const STEP_PIXELS: f32 = 0.7;
 /// Without a path the camera takes some steps aside for the walk; with one, settings are compared from several places
 /// along it, and all but these two begin where it does.
 pub fn of_scene(view: &View, base: &Settings, effort: &Effort) -> Vec<Job> {
-    let full = Settings { visibility: Visibility::Full, ..base.clone() };
+    let (full, swept) = (base.reference(), sweep_methods(base, effort.quick));
     let reference = Reference { scene: view.scene.clone(), camera: view.camera, settings: full.clone() };
     let comparison = |part, (width, height): (u32, u32), at, judge, methods: Vec<Method>, percent| {
         let budget = effort.share(percent);
@@ -34,7 +35,7 @@ pub fn of_scene(view: &View, base: &Settings, effort: &Effort) -> Vec<Job> {
             longest_frame: match part {
                 Part::Optimisations => budget / SLOWEST,
                 Part::Pixels => budget / 2,
-                _ => budget / (2 * methods.len() as u32),
+                _ => longest_frame(effort, methods.len()),
             },
             methods,
             rounds: effort.rounds,
@@ -44,7 +45,7 @@ pub fn of_scene(view: &View, base: &Settings, effort: &Effort) -> Vec<Job> {
     let size = effort.size(view.size);
     let half = (size.0 / 2, size.1 / 2);
     let mut jobs = vec![
-        comparison(Part::Settings, size, None, Judge::Metrics, sweep_methods(base, effort.quick), 58),
+        comparison(Part::Settings, size, None, Judge::Metrics, swept, SETTINGS_SHARE),
         comparison(
             Part::Optimisations,
             bare_size(view, half, effort.share(OPTIMISATIONS_SHARE) / (2 * SLOWEST)),
@@ -74,6 +75,42 @@ pub fn of_scene(view: &View, base: &Settings, effort: &Effort) -> Vec<Job> {
     }
     jobs
 }
+
+/// The part of a scene's time that the comparison of settings is given, in per cent.
+const SETTINGS_SHARE: u32 = 58;
+
+/// What a frame of that comparison may take.
+fn longest_frame(effort: &Effort, methods: usize) -> Duration {
+    effort.share(SETTINGS_SHARE) / (2 * methods as u32)
+}
+
+/// A size at which the reference's frame fits into a sweep from all that settings are compared from, as measured on small
+/// pictures: that of `view`, or a smaller one of its shape, halved as often as needed.
+pub fn affordable_size(view: &View, base: &Settings, effort: &Effort) -> (u32, u32) {
+    /// The small picture's edge is this many times smaller.
+    const SMALLER: u32 = 8;
+    let longest = longest_frame(effort, sweep_methods(base, effort.quick).len());
+    let (settings, mut scratch) = (base.reference(), Scratch::default());
+    let (width, height) = effort.size(view.size);
+    let mut film = Film::new((width / SMALLER).max(1), (height / SMALLER).max(1), Planes::default());
+    let mut time = |camera| {
+        let start = Instant::now();
+        render_frame(&view.scene, camera, &settings, &mut scratch, &mut film);
+        start.elapsed()
+    };
+    let sampled = view.clone().sampled(effort.cameras);
+    // The first frame of all starts threads and touches memory.
+    time(&view.camera);
+    let slowest = sampled.cameras().iter().map(time).max().unwrap_or_default();
+    let (mut frame, mut size) = (slowest * SMALLER * SMALLER, view.size);
+    while frame > longest && size.0.min(size.1) > 2 * LEAST_EDGE {
+        (frame, size) = (frame / 4, (size.0 / 2, size.1 / 2));
+    }
+    size
+}
+
+/// Pictures with a smaller edge say little.
+const LEAST_EDGE: u32 = 36;
 
 /// The part of a scene's time that optimisations are given, in per cent, once for each alone and once for all but each;
 /// and the part of that which the slowest frame may take.

@@ -48,7 +48,7 @@ pub const COLUMNS: [Column; 4] = [
             s.sphere_cache = SphereCache::Off;
         },
     },
-    Column { name: "certified", heading: "certified (exact)", settings: |_| () },
+    Column { name: "certified", heading: "certified (exact)", settings: |s| *s = s.without_approximations() },
 ];
 
 /// What the thesis printed: a scene's name, and for each of its three methods the milliseconds at each density, on an
@@ -108,7 +108,7 @@ pub fn jobs(view: &View, base: &Settings) -> Vec<Job> {
         },
         ..settings.clone()
     };
-    let full = Settings { visibility: Visibility::Full, ..base.clone() };
+    let full = base.reference();
     let reference = Reference { scene: view.scene.clone(), camera: view.camera, settings: at_density(25, &full) };
     let method = |density, column: &Column| {
         let mut settings = base.clone();

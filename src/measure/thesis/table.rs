@@ -1,16 +1,16 @@
 //! The table, in the thesis's layout: a row a scene, a column a method, four densities in a cell.
 
 use super::{COLUMNS, DENSITIES, PUBLISHED};
-use crate::measure::chart::short;
+use crate::measure::chart::{section_of, short};
 use crate::measure::records::{Part, Records, Row};
 use crate::measure::table::Table;
 
 /// The table of what was measured; `None` where nothing was.
 pub fn table(records: &Records) -> Option<Table> {
-    let mut scenes: Vec<&str> = Vec::new();
+    let mut views: Vec<View> = Vec::new();
     for row in records.of(Part::Thesis) {
-        if !scenes.contains(&row.key.scene.as_str()) {
-            scenes.push(&row.key.scene);
+        if !views.iter().any(|view| view.shows(row)) {
+            views.push(View(row));
         }
     }
     let first = records.of(Part::Thesis).next()?;
@@ -24,7 +24,7 @@ pub fn table(records: &Records) -> Option<Table> {
     });
     // Each of ours above one of theirs, for the eye alone: they are other scenes.
     let mut rows: Vec<Vec<String>> = Vec::new();
-    let mut ours = scenes.iter().map(|scene| measured(records, scene));
+    let mut ours = views.iter().map(|view| measured(records, view, &views));
     for published in theirs {
         rows.extend(ours.next());
         rows.push(published);
@@ -47,11 +47,26 @@ pub fn table(records: &Records) -> Option<Table> {
     })
 }
 
-/// The row of one scene.
-fn measured(records: &Records, scene: &str) -> Vec<String> {
+/// A scene from one camera, by one of its rows.
+struct View<'a>(&'a Row);
+
+impl View<'_> {
+    fn shows(&self, row: &Row) -> bool {
+        (&self.0.key.scene, &self.0.key.camera) == (&row.key.scene, &row.key.camera)
+    }
+
+    /// What it is called among `all`: the scene, and the camera where it is seen from several.
+    fn name(&self, all: &[Self]) -> String {
+        let scene = &self.0.key.scene;
+        let is_alone = all.iter().filter(|view| view.0.key.scene == *scene).count() == 1;
+        if is_alone { scene.clone() } else { section_of(self.0) }
+    }
+}
+
+/// The row of one view among `all`.
+fn measured(records: &Records, view: &View<'_>, all: &[View<'_>]) -> Vec<String> {
     let find = |method: &str, density: u32| {
-        let is_it =
-            |row: &&Row| row.key.scene == scene && row.key.method == method && row.key.at == Some(f64::from(density));
+        let is_it = |row: &&Row| view.shows(row) && row.key.method == method && row.key.at == Some(f64::from(density));
         records.of(Part::Thesis).find(is_it)
     };
     let time = |row: Option<&Row>| match row {
@@ -60,7 +75,7 @@ fn measured(records: &Records, scene: &str) -> Vec<String> {
         _ => "-".to_owned(),
     };
     let each = |cell: &dyn Fn(u32) -> String| DENSITIES.map(cell).join(" / ");
-    let mut cells = vec![scene.to_owned()];
+    let mut cells = vec![view.name(all)];
     cells.extend(COLUMNS.iter().map(|column| each(&|density| time(find(column.name, density)))));
     let error = |row: Option<&Row>, metric: &str| row.and_then(|row| row.error(metric));
     let by_method =

@@ -1,11 +1,16 @@
 //! What a search may vary: the rows of the list of settings that approximate or only cost time, each with its values.
 
-use crate::math::simd;
 use crate::settings::{Kind, Promise, ROWS, Row, Settings};
 use std::cmp::Reverse;
 
 /// Rows whose values mean little without each other: how pixels are found and filled.
 const TOGETHER: [&str; 4] = ["visibility", "stride", "fill", "match-threshold"];
+
+/// Whether a search varies this row at all. It leaves alone what no speed is to be had from, and the SIMD level: `auto` is
+/// the best of them.
+pub fn is_varied(row: &Row) -> bool {
+    row.name != "simd" && !matches!(row.kind, Kind::Number { tries: [], .. })
+}
 
 /// Rows that are varied together; mostly one.
 pub struct Axis(Vec<&'static Row>);
@@ -15,7 +20,10 @@ pub struct Axis(Vec<&'static Row>);
 pub fn axes(base: &Settings, fixed: &[&str]) -> Vec<Axis> {
     let free = |row: &&'static Row| {
         let asked = row.promise(&(row.get)(base));
-        !fixed.contains(&row.name) && asked != Some(Promise::Different) && !alternatives(row, base).is_empty()
+        is_varied(row)
+            && !fixed.contains(&row.name)
+            && asked != Some(Promise::Different)
+            && !alternatives(row, base).is_empty()
     };
     let (together, alone): (Vec<_>, Vec<_>) = ROWS.iter().filter(free).partition(|row| TOGETHER.contains(&row.name));
     let (same, approximate): (Vec<_>, Vec<_>) = alone.into_iter().partition(|row| keeps_pixels(row));
@@ -47,11 +55,27 @@ fn keeps_pixels(row: &Row) -> bool {
     matches!(&row.kind, Kind::Choice(choices) if choices.iter().all(|choice| choice.promise != Promise::Approximate))
 }
 
-/// `base` with another value; `None` where this machine cannot do it.
+/// `base` with another value; `None` where the row does not take it.
 fn with(row: &Row, value: &str, base: &Settings) -> Option<Settings> {
     let mut settings = base.clone();
     (row.set)(&mut settings, value).ok()?;
-    simd::is_available(settings.simd).then_some(settings)
+    Some(settings)
+}
+
+/// `settings` with each of its changes to `base` undone, one at a time. Rows that lose their effect by that are undone with it.
+pub fn with_one_change_undone(settings: &Settings, base: &Settings) -> Vec<Settings> {
+    let differs = |row: &&Row, settings: &Settings| (row.get)(settings) != (row.get)(base);
+    let undone = |row: &Row| {
+        let mut settings = settings.clone();
+        row.copy(base, &mut settings);
+        for row in ROWS {
+            if !row.has_effect(&settings) {
+                row.copy(base, &mut settings);
+            }
+        }
+        settings
+    };
+    ROWS.iter().filter(|row| differs(row, settings)).map(undone).collect()
 }
 
 impl Axis {
@@ -106,13 +130,27 @@ mod tests {
         {
             assert!(!names.contains(&row), "{row}");
         }
-        for row in ["refine-at-rest", "target-fps", "present"] {
+        for row in ["refine-at-rest", "target-fps", "present", "simd"] {
             assert!(!names.contains(&row), "{row}");
         }
         for row in ["visibility", "stride", "fill", "min-weight", "render-scale", "bvh", "shadow-cache", "sphere-cache"]
         {
             assert!(names.contains(&row), "{row}");
         }
+    }
+
+    #[test]
+    fn changes_are_undone_one_by_one_with_what_hangs_on_them() {
+        let base = Settings::exact();
+        let changed = Settings { visibility: Visibility::Subsample, stride: 2, min_weight: 0.5, ..base.clone() };
+        let undone = with_one_change_undone(&changed, &base);
+        let expected = [
+            Settings { min_weight: 0.5, ..base.clone() },
+            Settings { stride: base.stride, ..changed.clone() },
+            Settings { min_weight: base.min_weight, ..changed },
+        ];
+        assert_eq!(undone, expected);
+        assert!(with_one_change_undone(&base, &base).is_empty());
     }
 
     #[test]

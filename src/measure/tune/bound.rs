@@ -28,6 +28,19 @@ impl Bound {
         Ok(Self { metric, limit })
     }
 
+    /// Of several bounds on one metric only the strictest.
+    pub fn strictest(bounds: impl IntoIterator<Item = Self>) -> Vec<Self> {
+        let mut strictest: Vec<Self> = Vec::new();
+        for bound in bounds {
+            match strictest.iter_mut().find(|other| other.metric.name == bound.metric.name) {
+                Some(other) if other.holds(bound.limit) => *other = bound,
+                Some(_) => {}
+                None => strictest.push(bound),
+            }
+        }
+        strictest
+    }
+
     /// No bound at all, but `metric` is measured.
     pub fn none(metric: &'static Metric) -> Self {
         let limit = if metric.is_higher_better() { f64::NEG_INFINITY } else { f64::INFINITY };
@@ -84,6 +97,12 @@ mod tests {
         assert!(bound("ssim=0.99").holds(1.0) && !bound("ssim=0.99").holds(0.98));
         assert!(METRICS.iter().all(|metric| !bound(&format!("{}=1", metric.name)).holds(f64::NAN)));
         assert!(METRICS.iter().all(|metric| Bound::none(metric).holds(if metric.best > 0.0 { 0.1 } else { 9.0 })));
+    }
+
+    #[test]
+    fn of_several_bounds_on_a_metric_the_strictest_counts() {
+        let all = ["flip=0.1", "psnr=30", "flip=0.02", "psnr=40", "psnr=35", "flip=0.05"].map(bound);
+        assert_eq!(Bound::strictest(all), [bound("flip=0.02"), bound("psnr=40")]);
     }
 
     #[test]

@@ -75,9 +75,10 @@ pub struct Tuning {
     pub front: Vec<usize>,
     /// The cheapest that keeps all bounds.
     pub chosen: Option<usize>,
-    /// What was faster, but only within noise, and less simple.
+    /// What was faster than the chosen, but only within noise, and less simple.
     pub passed_over: Option<usize>,
-    /// Times of the last candidates that differ by less than this share are the same, as far as was measured.
+    /// Times of the chosen and of what was passed over are the same, as far as was measured, if they differ by less than this
+    /// share.
     pub noise: f64,
     /// The rows that were varied, each with its values.
     pub varied: Vec<(&'static str, Vec<String>)>,

@@ -52,7 +52,8 @@ fn rows(found: &Tuning) -> Vec<String> {
         };
         let times = trial.cpu_ms().map_or([f64::NAN; 2], |time| [time.min, time.median]);
         let mut row = vec![mark.to_owned()];
-        row.extend(times.map(|time| format!("{time:.1}")));
+        // Short times would be all zeros with one digit behind the point.
+        row.extend(times.map(|time| if time < 1.0 { short(time) } else { format!("{time:.1}") }));
         row.extend(trial.scores.iter().map(|score| if score.is_finite() { short(*score) } else { "-".to_owned() }));
         row.push(if trial.changes() == 0 { "every default".to_owned() } else { trial.settings.flags() });
         cells.push(row);

@@ -1,24 +1,27 @@
 //! The walk through the settings.
 
-use super::axes::{Axis, axes};
-use super::trial::{Trial, Verdict, front};
+use super::axes::{Axis, axes, is_varied, with_one_change_undone};
+use super::trial::{NOISE_PARTS, Trial, Verdict, front};
 use super::{Bound, Stopped, Studio, Task, Tuning};
 use crate::picture::EightBit;
 use crate::render::{Film, Planes};
-use crate::settings::{Kind, PRESETS, Promise, ROWS, Settings};
+use crate::settings::{PRESETS, Promise, ROWS, Settings};
 use std::time::{Duration, Instant};
 
 /// Views of a path that candidates are timed and first judged on, at most.
 const VIEWS: usize = 3;
 /// Visits that everything is given that others are held against.
 const VISITS: usize = 5;
-/// Visits of the last candidates, and the time after which no further pair of them starts. They come in pairs, so that
-/// their halves can be held against each other.
+/// Visits of each of the last candidates: so many, more of frames that are so short that these take less than some time, and
+/// no more than [`NOISE_PARTS`] of those so long that they take more than another.
 const LAST_VISITS: usize = 24;
+const MOST_LAST_VISITS: usize = 240;
+const LEAST_LAST_TIME: Duration = Duration::from_secs(2);
 const LAST_TIME: Duration = Duration::from_secs(8);
-/// The last candidates: how much slower than the best they may be, and how many there are.
+/// The last candidates: how much slower than the best they may be, and how many there are, without the simpler ones that
+/// they are held against.
 const LAST_SLACK: f64 = 1.15;
-const LAST: usize = 6;
+const LAST: usize = 4;
 /// Candidates that an axis hands on to the next, at most.
 const KEPT: usize = 8;
 /// Times from few visits that differ by less than this share are the same, and the least that any noise is taken for.
@@ -61,11 +64,13 @@ pub(super) fn run(task: &Task, studio: &mut dyn Studio) -> Result<Tuning, Stoppe
         let truth = search.truth(camera)?;
         search.truths.push(truth);
     }
+    // The first frame of all starts threads and touches memory.
+    search.studio.frame(&task.cameras[search.views[0]], &base, &mut search.film, None)?;
     let first = search.look(&base, None)?;
     search.complete(&[first])?;
     let walked = search.walk(&axes, &base, first)?;
     search.complete(&of_judged(&search.trials, task))?;
-    let (chosen, passed_over, noise) = search.choose()?;
+    let (chosen, passed_over, noise) = search.choose(&base)?;
     search.tell(1.0);
 
     let Search { trials, .. } = search;
@@ -99,11 +104,9 @@ fn of_judged(trials: &[Trial], task: &Task) -> Vec<usize> {
 fn start(task: &Task) -> Settings {
     let mut settings = Settings::exact();
     for row in ROWS {
-        let value = (row.get)(&task.settings);
-        let is_never_tried = matches!(row.kind, Kind::Number { tries: [], .. });
-        if task.fixed.contains(&row.name) || row.promise(&value) == Some(Promise::Different) || is_never_tried {
-            // What a row prints it also reads.
-            let _ = (row.set)(&mut settings, &value);
+        let is_different = row.promise(&(row.get)(&task.settings)) == Some(Promise::Different);
+        if task.fixed.contains(&row.name) || is_different || !is_varied(row) {
+            row.copy(&task.settings, &mut settings);
         }
     }
     settings
@@ -140,8 +143,15 @@ impl Search<'_> {
         Ok(EightBit::of_film(&self.film))
     }
 
-    /// Times and judges settings for the first time, unless they prove no faster than `parent`. Their place in `trials`.
+    /// Tries settings for the first time. Their place in `trials`.
     fn look(&mut self, settings: &Settings, parent: Option<usize>) -> Result<usize, Stopped> {
+        let trial = self.trial(settings, parent)?;
+        self.trials.push(trial);
+        Ok(self.trials.len() - 1)
+    }
+
+    /// Times and judges settings, unless they prove no faster than `parent`.
+    fn trial(&mut self, settings: &Settings, parent: Option<usize>) -> Result<Trial, Stopped> {
         let mut trial = Trial::new(settings.clone(), self.bounds(), self.views.len());
         for view in 0..self.views.len() {
             let least = parent.map_or(f64::INFINITY, |parent| self.trials[parent].least(view));
@@ -165,8 +175,7 @@ impl Search<'_> {
                 trial.judge(&self.truths[view], &EightBit::of_film(&self.film), &self.task.bounds);
             }
         }
-        self.trials.push(trial);
-        Ok(self.trials.len() - 1)
+        Ok(trial)
     }
 
     /// The trial of some settings, which are looked at unless they were before.
@@ -175,6 +184,15 @@ impl Search<'_> {
             Some(place) => Ok(place),
             None => self.look(settings, parent),
         }
+    }
+
+    /// The trial of some settings, which are judged even if they are slow.
+    fn judged(&mut self, settings: &Settings) -> Result<usize, Stopped> {
+        let place = self.tried(settings, None)?;
+        if self.trials[place].verdict == Verdict::Slow {
+            self.trials[place] = self.trial(settings, None)?;
+        }
+        Ok(place)
     }
 
     /// Times trials in turn, so that what else the machine does meets them alike.
@@ -256,10 +274,7 @@ impl Search<'_> {
     fn also(&self, base: &Settings) -> Vec<Settings> {
         let of_preset = |preset: Settings| {
             let mut settings = base.clone();
-            for row in preset.changed().filter(|row| !self.task.fixed.contains(&row.name)) {
-                // What a row prints it also reads.
-                let _ = (row.set)(&mut settings, &(row.get)(&preset));
-            }
+            settings.take_changes(&preset, |row| !self.task.fixed.contains(&row.name));
             settings
         };
         PRESETS.iter().map(|preset| of_preset((preset.settings)())).chain(self.task.also.iter().cloned()).collect()
@@ -267,40 +282,76 @@ impl Search<'_> {
 
     /// The cheapest trial that keeps the bounds on every frame; what was faster within noise, if anything; and the noise.
     ///
+    /// The last candidates are timed anew, all in the same rounds. From the fastest of them on, a simpler one is taken as long
+    /// as what it lacks gains no more than the noise.
+    ///
     /// Of a path only a few views were looked at so far. So the choice is judged on all of them, and where one breaks a bound
     /// the next best is taken, which is asked about that view first.
-    fn choose(&mut self) -> Result<(Option<usize>, Option<usize>, f64), Stopped> {
+    fn choose(&mut self, base: &Settings) -> Result<(Option<usize>, Option<usize>, f64), Stopped> {
+        let end = Instant::now() + LAST_TIME;
         loop {
-            let mut last: Vec<usize> =
-                (0..self.trials.len()).filter(|&i| self.trials[i].verdict == Verdict::Holds).collect();
-            last.sort_by(|&a, &b| self.trials[a].cost().total_cmp(&self.trials[b].cost()));
-            let Some(&best) = last.first() else { return Ok((None, None, LEAST_NOISE)) };
-            let slowest = LAST_SLACK * self.trials[best].cost();
-            last.retain(|&place| self.trials[place].cost() <= slowest);
-            last.truncate(LAST);
-            let start = Instant::now();
-            loop {
-                let missing: Vec<usize> =
-                    last.iter().copied().filter(|&place| self.trials[place].visits() < LAST_VISITS).collect();
-                self.visit(&missing)?;
-                self.visit(&missing)?;
-                if missing.is_empty() || last.len() == 1 || start.elapsed() > LAST_TIME {
-                    break;
-                }
-            }
-            let noise = last.iter().map(|&place| self.trials[place].noise()).fold(LEAST_NOISE, f64::max);
+            let last = self.last(base)?;
+            let last = self.time_anew(last, end)?;
             let cost = |place: usize| self.trials[place].cost();
-            let fastest = last.iter().copied().min_by(|&a, &b| cost(a).total_cmp(&cost(b)));
-            let least = fastest.map_or(f64::INFINITY, cost);
-            let simplest =
-                last.iter().copied().filter(|&place| cost(place) <= least * (1.0 + noise)).min_by(|&a, &b| {
-                    self.trials[a].changes().cmp(&self.trials[b].changes()).then(cost(a).total_cmp(&cost(b)))
-                });
-            let Some(chosen) = simplest else { return Ok((None, None, noise)) };
+            let changes = |place: usize| self.trials[place].changes();
+            let noise = |a: usize, b: usize| self.trials[a].noise().max(self.trials[b].noise()).max(LEAST_NOISE);
+            let by_cost = |a: &usize, b: &usize| cost(*a).total_cmp(&cost(*b));
+            let Some(mut chosen) = last.iter().copied().min_by(by_cost) else { return Ok((None, None, LEAST_NOISE)) };
+            let mut passed_over = None;
+            loop {
+                let is_as_good = |&place: &usize| {
+                    changes(place) < changes(chosen) && cost(place) <= cost(chosen) * (1.0 + noise(place, chosen))
+                };
+                let as_good = last.iter().copied().filter(is_as_good);
+                let Some(simpler) = as_good.min_by(|a, b| changes(*a).cmp(&changes(*b)).then(by_cost(a, b))) else {
+                    break;
+                };
+                passed_over = Some(chosen);
+                chosen = simpler;
+            }
+            let noise = noise(chosen, passed_over.unwrap_or(chosen));
             if self.holds_everywhere(chosen)? {
-                return Ok((Some(chosen), fastest.filter(|fastest| *fastest != chosen), noise));
+                return Ok((Some(chosen), passed_over, noise));
             }
         }
+    }
+
+    /// The last candidates: the best, each of them with any one of its changes undone, and `base`; all keep the bounds.
+    fn last(&mut self, base: &Settings) -> Result<Vec<usize>, Stopped> {
+        let holds = |trials: &[Trial], place: usize| trials[place].verdict == Verdict::Holds;
+        let mut last: Vec<usize> = (0..self.trials.len()).filter(|&place| holds(&self.trials, place)).collect();
+        last.sort_by(|&a, &b| self.trials[a].cost().total_cmp(&self.trials[b].cost()));
+        let slowest = LAST_SLACK * last.first().map_or(0.0, |&best| self.trials[best].cost());
+        last.retain(|&place| self.trials[place].cost() <= slowest);
+        last.truncate(LAST);
+        let undone = last.iter().flat_map(|&place| with_one_change_undone(&self.trials[place].settings, base));
+        let simpler: Vec<Settings> = undone.chain([base.clone()]).collect();
+        for settings in simpler {
+            let place = self.judged(&settings)?;
+            if holds(&self.trials, place) && !last.contains(&place) {
+                last.push(place);
+            }
+        }
+        Ok(last)
+    }
+
+    /// Times trials anew, in turn and equally often, and gives those that are near the fastest.
+    fn time_anew(&mut self, mut last: Vec<usize>, end: Instant) -> Result<Vec<usize>, Stopped> {
+        last.iter().for_each(|&place| self.trials[place].forget_times());
+        let start = Instant::now();
+        for visits in 1..=MOST_LAST_VISITS {
+            self.visit(&last)?;
+            if visits == NOISE_PARTS {
+                let cost = |place: usize| self.trials[place].cost();
+                let least = last.iter().map(|&place| cost(place)).fold(f64::INFINITY, f64::min);
+                last.retain(|&place| cost(place) <= LAST_SLACK * least);
+            }
+            let is_certain = last.len() == 1 || visits >= LAST_VISITS && start.elapsed() > LEAST_LAST_TIME;
+            if visits >= NOISE_PARTS && (is_certain || Instant::now() > end) {
+                break;
+            }
+        }
+        Ok(last)
     }
 
     /// Judges a trial on all views that it was not judged on yet, until one breaks a bound.
@@ -320,5 +371,66 @@ impl Search<'_> {
             self.tell(from + (0.99 - from) * nth as f64 / order.len() as f64);
         }
         Ok(true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Camera;
+
+    /// Frames that cost what they are said to, or up to 3 % more, and the first ones twice that; all pictures are equal.
+    struct Pretended {
+        cost: fn(&Settings) -> f64,
+        frames: u32,
+    }
+
+    impl Studio for Pretended {
+        fn frame(
+            &mut self,
+            _: &Camera,
+            settings: &Settings,
+            _: &mut Film,
+            _: Option<Duration>,
+        ) -> Result<Option<f64>, Stopped> {
+            self.frames += 1;
+            let cold = if self.frames <= 2 { 2.0 } else { 1.0 };
+            let disturbed = 1.0 + 0.03 * f64::from(self.frames * 7919 % 101) / 101.0;
+            Ok(Some(cold * disturbed * (self.cost)(settings)))
+        }
+
+        fn told(&mut self, _: f64, _: &[Trial]) {}
+    }
+
+    /// The settings found on one view.
+    fn found(cost: fn(&Settings) -> f64) -> Settings {
+        let task = Task {
+            cameras: vec![Camera::default()],
+            size: (16, 9),
+            settings: Settings::exact(),
+            fixed: Vec::new(),
+            bounds: vec![Bound::parse("flip=0.1").expect("right")],
+            also: Vec::new(),
+            budget: Duration::from_secs(60),
+        };
+        let tuning = run(&task, &mut Pretended { cost, frames: 0 }).expect("nothing stops it");
+        tuning.trials[tuning.chosen.expect("every picture is equal")].settings.clone()
+    }
+
+    #[test]
+    fn what_gains_nothing_is_not_chosen() {
+        assert_eq!(found(|_| 10.0), Settings::exact());
+    }
+
+    #[test]
+    fn of_many_changes_those_are_chosen_that_gain() {
+        let cost = |settings: &Settings| {
+            let weight = if settings.min_weight > 0.01 { 0.9 } else { 1.0 };
+            let scale = f64::from(settings.render_scale.max(0.5));
+            10.0 * weight * scale * if settings.bvh { 1.0 } else { 0.995 }
+        };
+        let found = found(cost);
+        assert!(found.min_weight > 0.01 && found.render_scale <= 0.5, "{}", found.flags());
+        assert_eq!(found.changed().count(), 2, "{}", found.flags());
     }
 }

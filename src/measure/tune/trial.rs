@@ -1,11 +1,15 @@
 //! Settings that were tried: what they cost, and how wrong their pictures are.
 
 use super::bound::Bound;
+use crate::measure::front::unbeaten;
 use crate::measure::metric::Pair;
 use crate::measure::run::CpuTime;
 use crate::measure::statistics::Spread;
 use crate::picture::EightBit;
 use crate::settings::Settings;
+
+/// Parts of a trial's visits that are held against each other to tell what its least time is worth.
+pub(super) const NOISE_PARTS: usize = 3;
 
 /// What is known of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,12 +81,18 @@ impl Trial {
         self.times[view].push(milliseconds);
     }
 
-    /// How far the least times of every other visit lie from those of the rest, as a share: what the least time is worth.
+    /// Forgets all visits, to be timed anew.
+    pub(super) fn forget_times(&mut self) {
+        self.times.iter_mut().for_each(Vec::clear);
+    }
+
+    /// How far apart the least times of every [`NOISE_PARTS`]th visit lie, as a share: what the least time is worth.
     pub(super) fn noise(&self) -> f64 {
-        let least =
-            |times: &[f64], odd: usize| times.iter().skip(odd).step_by(2).copied().fold(f64::INFINITY, f64::min);
-        let halves = [0, 1].map(|odd| self.times.iter().map(|times| least(times, odd)).sum::<f64>());
-        let noise = (halves[0] - halves[1]).abs() / halves[0].min(halves[1]);
+        let least = |times: &[f64], part: usize| {
+            times.iter().skip(part).step_by(NOISE_PARTS).copied().fold(f64::INFINITY, f64::min)
+        };
+        let parts = || (0..NOISE_PARTS).map(|part| self.times.iter().map(|times| least(times, part)).sum::<f64>());
+        let noise = parts().fold(0.0, f64::max) / parts().fold(f64::INFINITY, f64::min) - 1.0;
         if noise.is_finite() { noise } else { 0.0 }
     }
 
@@ -114,20 +124,17 @@ impl Trial {
 /// Of `places` in `trials`, those that nothing else of them beats in both time and error; of times that differ by less than
 /// the share `noise`, the simplest.
 pub(super) fn front(trials: &[Trial], places: &[usize], bounds: &[Bound], noise: f64) -> Vec<usize> {
-    let unbeaten = |places: &[usize], beats: &dyn Fn(&Trial, &Trial) -> bool| -> Vec<usize> {
-        let is_beaten = |place: usize| {
-            let by = |&other: &usize| {
-                other != place
-                    && trials[other].is_as_true_as(&trials[place], bounds)
-                    && beats(&trials[other], &trials[place])
-            };
-            places.iter().any(by)
-        };
-        places.iter().copied().filter(|&place| !is_beaten(place)).collect()
+    let of_as_true = |places: &[usize], is_better: &dyn Fn(&Trial, &Trial) -> bool| {
+        unbeaten(places, |a, b| {
+            let (a, b) = (&trials[a], &trials[b]);
+            a.is_as_true_as(b, bounds) && is_better(a, b)
+        })
     };
     // In two steps, neither of which can go round in circles: together they could.
-    let places = unbeaten(places, &|a, b| a.cost() * (1.0 + noise) < b.cost());
-    unbeaten(&places, &|a, b| a.cost() <= b.cost() * (1.0 + noise) && (a.changes(), a.cost()) < (b.changes(), b.cost()))
+    let places = of_as_true(places, &|a, b| a.cost() * (1.0 + noise) < b.cost());
+    of_as_true(&places, &|a, b| {
+        a.cost() <= b.cost() * (1.0 + noise) && (a.changes(), a.cost()) < (b.changes(), b.cost())
+    })
 }
 
 #[cfg(test)]
@@ -173,13 +180,15 @@ mod tests {
     }
 
     #[test]
-    fn costs_are_means_of_least_times_and_noise_what_halves_differ_by() {
+    fn costs_are_means_of_least_times_and_noise_what_thirds_differ_by() {
         let mut trial = Trial::new(Settings::exact(), &bounds(), 2);
         for (view, times) in [[10.0, 11.0, 12.0, 11.0], [30.0, 32.0, 30.0, 31.0]].iter().enumerate() {
             times.iter().for_each(|time| trial.add(view, *time));
         }
         assert_eq!(trial.cost(), 20.0);
-        assert!((trial.noise() - 2.0 / 40.0).abs() < 1e-9);
+        assert!((trial.noise() - 3.0 / 40.0).abs() < 1e-9);
+        trial.forget_times();
+        assert_eq!((trial.visits(), trial.noise()), (0, 0.0));
     }
 
     #[test]
