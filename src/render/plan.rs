@@ -199,6 +199,31 @@ impl Plan {
                 "vertex data: off, every normal follows from the shape",
             ),
             say(
+                self.vertex_colors,
+                "vertex colours: on, some triangles carry colours".to_owned(),
+                "vertex colours: off, nothing carries any",
+            ),
+            say(
+                self.gradients,
+                "ray widths: on, images are filtered or bent by them".to_owned(),
+                "ray widths: off, no image is looked up",
+            ),
+            say(
+                self.relief,
+                "relief: on, some material has a normal, bump or parallax map".to_owned(),
+                "relief: off, every surface is as smooth as its shape",
+            ),
+            say(
+                !scene.geometry.holes.is_empty(),
+                format!("holes: on, {} triangles are cut out", scene.geometry.count(PrimitiveKind::Cutout)),
+                "holes: off, every surface is whole",
+            ),
+            say(
+                self.blending,
+                "blending: on, some surfaces let what lies straight behind shine through".to_owned(),
+                "blending: off, no surface is see-through by its opacity",
+            ),
+            say(
                 self.emission,
                 "emission: on, some material gives off light".to_owned(),
                 "emission: off, nothing gives off light",
