@@ -122,7 +122,7 @@ fn every_bad_file_gives_a_picture_or_one_clear_error_in_time() {
 fn the_program_survives_every_bad_file_within_a_gibibyte() {
     use std::process::Command;
     for file in files("bad") {
-        let script = "ulimit -v 1048576; exec \"$0\" --quiet render --size 16x16 --threads 1 --stats - \"$1\"";
+        let script = "ulimit -v 1048576; exec \"$0\" render --quiet --size 16x16 --threads 1 --stats - \"$1\"";
         let mut shell = Command::new("sh");
         let output = shell.args(["-c", script, env!("CARGO_BIN_EXE_raywalk")]).arg(&file).output().unwrap();
         let (name, told) = (file.display(), String::from_utf8_lossy(&output.stderr).into_owned());
