@@ -6,6 +6,7 @@ mod adversary;
 mod bench;
 mod blit;
 mod cli;
+mod corpus;
 mod determinism;
 mod exactness;
 mod flat_mirrors;

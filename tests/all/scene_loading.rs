@@ -203,3 +203,19 @@ fn red_at<S: Simd>(simd: S, texture: &Texture, u: f32, v: f32) -> f32 {
     let uv = [S::f32s::splat(simd, u), S::f32s::splat(simd, v)];
     texture.sample::<S, false>(simd, &Coordinates { uv, spread2: None }, 1).color.x[0]
 }
+
+#[test]
+fn nothing_solid_is_entered() {
+    let solids = [
+        r#"{ "type": "sphere", "center": [5, 1, 0], "radius": 1 }"#,
+        r#"{ "type": "cylinder", "base": [5, 0, 0], "top": [5, 4, 0], "radius": 1 }"#,
+        r#"{ "type": "cone", "base": [5, 0, 0], "top": [5, 4, 0], "radius": 2 }"#,
+        r#"{ "type": "box", "min": [4, 0, -1], "max": [6, 3, 1] }"#,
+    ];
+    for objects in solids.into_iter().chain([&*solids.join(",")]) {
+        let scene = load_objects(objects);
+        let Aabb { min, max } = scene.bounds();
+        let eye = scene.cameras[0].camera.eye;
+        assert!(eye.cmplt(min).any() || eye.cmpgt(max).any(), "{eye} is in {min} to {max} of {objects}");
+    }
+}

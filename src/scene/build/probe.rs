@@ -11,7 +11,8 @@ use glam::Vec3;
 pub struct Met {
     /// How far away.
     pub distance: f32,
-    /// Unit geometric normal, on the outer side of what has one; against the ray where the primitive is not flat.
+    /// Unit geometric normal, on the outer side of what has one; where the primitive is not flat, against the ray that
+    /// comes from outside and along the one that comes from inside.
     pub normal: Vec3,
 }
 
@@ -31,7 +32,12 @@ impl<'a> Probe<'a> {
     pub fn look(&mut self, origin: Vec3, directions: &[Vec3], t_min: f32) -> Vec<Option<Met>> {
         let hits = dispatch!(SimdToken::best(), simd => self.trace(simd, origin, directions, t_min));
         let met = |(&(distance, primitive), &direction): (&(f32, PrimitiveIndex), &Vec3)| {
-            let normal = (primitive != NO_PRIMITIVE).then(|| self.normal(primitive).unwrap_or(-direction))?;
+            let flat = (primitive != NO_PRIMITIVE).then(|| self.normal(primitive))?;
+            let normal = flat.unwrap_or_else(|| {
+                let middle = self.geometry.bounds_of(primitive).center();
+                let from_inside = (origin + direction * distance - middle).dot(direction) > 0.0;
+                if from_inside { direction } else { -direction }
+            });
             Some(Met { distance, normal })
         };
         hits.iter().zip(directions).map(met).collect()
@@ -106,6 +112,19 @@ mod tests {
             let directions = [Vec3::NEG_Z, Vec3::Z, Vec3::X];
             assert_eq!(probe.look(origin, &directions, 0.0), [Some(Met { distance: 2.0, normal }), None, None]);
         }
+    }
+
+    #[test]
+    fn round_things_have_an_inside() {
+        let id = PrimitiveId { object: 0, primitive: 0 };
+        let shape = Shape::Sphere { center: Vec3::ONE, radius: 1.0 };
+        let geometry = Geometry::build(vec![Part { shape, id, attributes: None, extras: None, holes: None }]);
+        let mut probe = Probe::new(&geometry);
+        for origin in [Vec3::ONE, Vec3::new(1.0, 1.0, 1.9), Vec3::new(1.0, 1.0, 0.1)] {
+            assert_eq!(probe.look_along(origin, Vec3::Z, 0.0).map(|met| met.normal), Some(Vec3::Z), "{origin}");
+        }
+        let outside = probe.look_along(Vec3::new(1.0, 1.0, -3.0), Vec3::Z, 0.0);
+        assert_eq!(outside.map(|met| met.normal), Some(Vec3::NEG_Z));
     }
 
     #[test]

@@ -1,6 +1,5 @@
-//! Scene formats other than JSON, what they share, and what becomes of damaged files of any.
+//! Scene formats other than JSON and glTF, what all share, and what becomes of damaged files of any.
 
-mod corpus;
 mod model;
 mod mutation;
 mod nff;

@@ -1,7 +1,6 @@
-//! glTF: what each part of a file becomes, how wrong files fail, and files that others made.
+//! glTF: what each part of a file becomes, and how wrong files fail.
 
 pub mod broken;
-mod corpus;
 mod file;
 mod materials;
 mod meshes;

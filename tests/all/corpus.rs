@@ -1,0 +1,135 @@
+//! Files that others made, where they lie beside the project: good ones are drawn, bad ones are told of.
+
+use raywalk::render::{Film, Planes, Scratch, render_frame};
+use raywalk::scene::{FORMATS, LoadOptions, Scene, SceneError, load};
+use raywalk::settings::Settings;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Longest time that a file may take.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Files that hold nothing but points and lines.
+const NOTHING_TO_DRAW: [&str; 2] = ["testline.obj", "testpoints.obj"];
+
+/// The scene files in a folder of the data beside the project, if there is one. JSON is everybody's format.
+fn files(folder: &str) -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(folder);
+    let extensions = FORMATS.iter().filter(|format| format.name != "JSON").flat_map(|format| format.extensions);
+    let endings: Vec<String> = extensions.map(|extension| format!(".{extension}")).collect();
+    let mut waiting = vec![root.clone()];
+    let mut files = Vec::new();
+    while let Some(folder) = waiting.pop() {
+        for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+            let path = entry.path();
+            let name = path.to_string_lossy().to_lowercase();
+            if path.is_dir() {
+                waiting.push(path);
+            } else if endings.iter().any(|ending| name.ends_with(ending)) {
+                files.push(path);
+            }
+        }
+    }
+    if files.is_empty() {
+        println!("skipped: {} is not there", root.display());
+    }
+    files.sort();
+    files
+}
+
+/// How many pixels of a small picture show a surface, be it black.
+fn seen(scene: &Scene) -> usize {
+    let mut film = Film::new(64, 36, Planes { depth: true, ..Planes::default() });
+    render_frame(scene, &scene.cameras[0].camera, &Settings::exact(), &mut Scratch::new(), &mut film);
+    let pixels = (0..36).flat_map(|y| (0..64).map(move |x| (x, y)));
+    pixels.filter(|&(x, y)| film.depth(x, y).is_some_and(f32::is_finite)).count()
+}
+
+/// Whether an error is that of a kind of file that cannot be shown at all.
+fn is_expected(error: &SceneError) -> bool {
+    let text = error.to_string();
+    text.contains("draco") || text.contains("glTF version 2.1")
+}
+
+fn draw_all(folder: &str) {
+    for file in files(folder) {
+        let (start, name) = (Instant::now(), file.display());
+        match load(&file, &LoadOptions::default()) {
+            Err(error) => assert!(is_expected(&error), "{error}"),
+            Ok(scene) => {
+                let is_empty = NOTHING_TO_DRAW.iter().any(|empty| file.ends_with(empty))
+                    || scene.warnings.iter().any(|warning| warning.message.contains("points and lines"));
+                assert!(seen(&scene) > 0 || (scene.objects.is_empty() && is_empty), "{name} shows nothing");
+            }
+        }
+        assert!(start.elapsed() < PATIENCE, "{name} took {:?}", start.elapsed());
+    }
+}
+
+#[test]
+fn every_good_gltf_file_is_drawn() {
+    draw_all("gltf");
+}
+
+#[test]
+fn every_good_obj_file_is_drawn() {
+    draw_all("obj");
+}
+
+#[test]
+fn the_standard_procedural_databases_are_drawn_whole() {
+    draw_all("spd");
+    // Spheres, cones and cylinders, polygons, patches, lights.
+    let counts = [
+        ("balls_s2.nff", [91, 0, 1, 0, 3]),
+        ("balls_s4.nff", [7381, 0, 1, 0, 3]),
+        ("gears_s1.nff", [0, 0, 147, 0, 5]),
+        ("mount_s3.nff", [4, 0, 128, 0, 1]),
+        ("mount_s6.nff", [4, 0, 8192, 0, 1]),
+        ("rings_s2.nff", [150, 150, 1, 0, 3]),
+        ("teapot_s3.nff", [0, 0, 9, 552, 2]),
+        ("tetra_s3.nff", [0, 0, 64, 0, 1]),
+        ("tree_s4.nff", [31, 31, 1, 0, 7]),
+        ("tree_s5_tess.nff", [0, 0, 1, 8316, 7]),
+    ];
+    for path in files("spd") {
+        let scene = load(&path, &LoadOptions::default()).unwrap();
+        let Some((name, expected)) = counts.iter().find(|(name, _)| path.ends_with(name)) else { continue };
+        let of = |kinds: &[&str]| scene.objects.iter().filter(|object| kinds.contains(&object.kind)).count();
+        let found = [of(&["sphere"]), of(&["cone", "cylinder"]), of(&["polygon"]), of(&["patch"]), scene.lights.len()];
+        assert_eq!(found, *expected, "{name}");
+    }
+}
+
+#[test]
+fn every_bad_file_gives_a_picture_or_one_clear_error_in_time() {
+    for file in files("bad") {
+        let (start, name) = (Instant::now(), file.display());
+        match load(&file, &LoadOptions::default()) {
+            Ok(scene) => drop(seen(&scene)),
+            Err(error) => {
+                let text = error.to_string();
+                assert!(!text.contains('\n') && text.len() < 1000 && text.contains(&*name.to_string()), "{text}");
+            }
+        }
+        assert!(start.elapsed() < PATIENCE, "{name} took {:?}", start.elapsed());
+    }
+}
+
+/// The program itself on every bad file, in a gibibyte of memory: it ends by itself, with one line if it fails.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_program_survives_every_bad_file_within_a_gibibyte() {
+    use std::process::Command;
+    for file in files("bad") {
+        let script = "ulimit -v 1048576; exec \"$0\" render --quiet --size 16x16 --threads 1 --stats - \"$1\"";
+        let mut shell = Command::new("sh");
+        let output = shell.args(["-c", script, env!("CARGO_BIN_EXE_raywalk")]).arg(&file).output().unwrap();
+        let (name, told) = (file.display(), String::from_utf8_lossy(&output.stderr).into_owned());
+        match output.status.code() {
+            Some(0) => assert!(told.is_empty(), "{name}: {told}"),
+            Some(1) => assert!(told.starts_with("error: ") && told.trim_end().lines().count() == 1, "{name}: {told}"),
+            code => panic!("{name} ends with {code:?}: {told}"),
+        }
+    }
+}
