@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// The picture's size where neither the command line nor the scene gives one.
-const DEFAULT_SIZE: Size = Size { width: 1280, height: 720 };
+pub const DEFAULT_SIZE: Size = Size { width: 1280, height: 720 };
 
 /// A scene that was read.
 #[derive(Debug)]
@@ -32,7 +32,8 @@ pub struct Stage {
 
 /// Reads the scene and tells its warnings on stderr, unless they were not wanted.
 pub fn load(reading: &Reading) -> Result<Loaded, SceneError> {
-    let options = LoadOptions { strict: reading.strict, limits: reading.limits.clone() };
+    let options =
+        LoadOptions { strict: reading.strict, limits: reading.limits.clone(), progress: reading.progress.clone() };
     let start = Instant::now();
     let scene = match &reading.scene {
         Some(file) => scene::load(file, &options)?,

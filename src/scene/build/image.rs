@@ -3,7 +3,7 @@
 use crate::scene::desc::map::shortened;
 use crate::scene::desc::problem::{Outcome, Problem, Warnings};
 use crate::scene::desc::{ImageDesc, ImageSource};
-use crate::scene::files::{FileError, Files};
+use crate::scene::files::{CANCELLED, FileError, Files};
 use crate::scene::limits::{Limits, exceeded};
 use crate::scene::material::Encoding;
 use crate::scene::texels::Texels;
@@ -25,6 +25,8 @@ enum DecodeError {
     Edge(u64),
     #[error("the scene's textures have {}", exceeded("texture-bytes", *.0))]
     Budget(u64),
+    #[error("{CANCELLED}")]
+    Cancelled,
     #[error("the decoder gave up; the file is damaged")]
     Panicked,
     #[error("it has no pixels")]
@@ -134,6 +136,8 @@ impl ImageStore {
 
     /// Decodes images side by side. What they may take is shared out beforehand, by what their headers say.
     fn decode(&mut self, waiting: Vec<Waiting>) {
+        let progress = self.files.progress();
+        progress.begin("decoding textures", waiting.len());
         let budgets: Vec<Result<u64, DecodeError>> = waiting
             .iter()
             .map(|image| {
@@ -146,7 +150,9 @@ impl ImageStore {
             })
             .collect();
         let decode = |(image, budget): (Waiting, Result<u64, DecodeError>)| {
-            let texels = budget.and_then(|budget| guarded(|| decode(&image, budget)));
+            let allowed = if progress.is_cancelled() { Err(DecodeError::Cancelled) } else { budget };
+            let texels = allowed.and_then(|budget| guarded(|| decode(&image, budget)));
+            progress.advance();
             (image.key, texels.map(Arc::new).map_err(|error| error.to_string()))
         };
         let decoded: Vec<_> = waiting.into_par_iter().zip(budgets).map(decode).collect();
