@@ -72,6 +72,22 @@ impl Walker {
         }
     }
 
+    /// Comes to another place: stands at `home`, at the speed that `surroundings` set. Habits of looking stay.
+    pub fn enter(&mut self, home: Camera, surroundings: f64) {
+        let (sensitivity, invert_look) = (self.sensitivity, self.invert_look);
+        *self = Self { sensitivity, invert_look, ..Self::new(home, surroundings) };
+    }
+
+    /// Where the walk started.
+    pub fn home(&self) -> Camera {
+        self.home
+    }
+
+    /// Has another place be where the walk started; the walker stays where they are.
+    pub fn set_home(&mut self, home: Camera) {
+        self.home = home;
+    }
+
     /// Goes to `camera` and takes its field of view. Speed stays.
     pub fn go_to(&mut self, camera: Camera) {
         (self.upright, self.pose) = stand(&camera);

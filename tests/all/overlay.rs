@@ -3,7 +3,10 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use raywalk::app::history::History;
+use raywalk::app::inspection::Inspection;
+use raywalk::app::lighting::Dial;
 use raywalk::app::overlay::{self, Change, Showing, Shown, Tuning, View, theme};
+use raywalk::app::scenes::Report;
 use raywalk::app::survey::{End, Point, Survey};
 use raywalk::geometry::Geometry;
 use raywalk::math::simd;
@@ -12,6 +15,7 @@ use raywalk::measure::tune::Bound;
 use raywalk::render::FrameStats;
 use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene};
 use raywalk::settings::{Kind, PRESETS, ROWS, Settings, Supersample, row};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 fn scene() -> Scene {
@@ -20,9 +24,9 @@ fn scene() -> Scene {
         name: "room".to_owned(),
         format: "JSON",
         generation: 1,
-        geometry: Geometry::build(Vec::new()),
+        geometry: Arc::new(Geometry::build(Vec::new())),
         build_ms: 0.0,
-        objects: Vec::new(),
+        objects: Vec::new().into(),
         materials: vec![Material::default_phong()],
         textures: Vec::new(),
         lights: Vec::new(),
@@ -43,6 +47,9 @@ struct Panel {
     showing: Showing,
     bound: Bound,
     survey: Option<Survey>,
+    report: Report<'static>,
+    lights: Vec<Dial>,
+    inspection: Option<Inspection>,
     changes: Vec<Change>,
 }
 
@@ -52,7 +59,19 @@ impl Panel {
         let shown = Shown::default();
         let (history, showing) = (History::default(), Showing::AsSet);
         let bound = Bound::parse("flip=0.01").expect("right");
-        Self { scene: scene(), settings, history, shown, showing, bound, survey: None, changes: Vec::new() }
+        Self {
+            scene: scene(),
+            settings,
+            history,
+            shown,
+            showing,
+            bound,
+            survey: None,
+            report: Report::default(),
+            lights: Vec::new(),
+            inspection: None,
+            changes: Vec::new(),
+        }
     }
 
     fn show(&mut self, ui: &mut egui::Ui) {
@@ -74,6 +93,11 @@ impl Panel {
                 drawn: &self.settings,
                 is_elsewhere: false,
             },
+            scenes: self.report.clone(),
+            lights: &self.lights,
+            inspection: self.inspection.as_ref(),
+            stands: Some(Camera::default()),
+            crosshair: true,
         };
         let changes = overlay::show(ui, &view, self.shown);
         for change in &changes {
