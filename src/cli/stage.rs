@@ -1,6 +1,7 @@
 //! What is rendered: the scene from disk, the camera in it, and what the command line leaves to the scene.
 
 use super::options::{Options, Reading, View, check_size};
+use super::progress::Drawing;
 use super::values::Size;
 use super::{Failure, stdout};
 use raywalk::scene::{self, Camera, LoadOptions, Scene, SceneError};
@@ -34,6 +35,7 @@ pub struct Stage {
 pub fn load(reading: &Reading) -> Result<Loaded, SceneError> {
     let options =
         LoadOptions { strict: reading.strict, limits: reading.limits.clone(), progress: reading.progress.clone() };
+    let _shown = Drawing::of_load(&reading.progress, reading.quiet);
     let start = Instant::now();
     let scene = match &reading.scene {
         Some(file) => scene::load(file, &options)?,

@@ -12,6 +12,7 @@ pub mod desc;
 pub mod error;
 pub mod files;
 pub mod format;
+pub mod guard;
 pub mod light;
 pub mod limits;
 pub mod material;

@@ -8,8 +8,9 @@ use std::path::Path;
 
 /// Widest that a box of text is, in points.
 const WIDTH: f32 = 560.0;
-/// Distance from the window's lower edge in points.
+/// Distance from the window's sides in points, and from its lower edge, where notices come and go.
 const MARGIN: f32 = 24.0;
+const ABOVE_NOTICES: f32 = 96.0;
 /// Most warnings of a scene that are listed.
 const WARNINGS: usize = 5;
 /// Highest that the text of a failure is, in points.
@@ -24,7 +25,7 @@ pub fn boxes(ui: &Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     let available = ui.ctx().content_rect();
     let width = WIDTH.min(available.width() - 2.0 * MARGIN).max(1.0);
     egui::Area::new(egui::Id::unique("scenes"))
-        .anchor(Align2::CENTER_BOTTOM, egui::vec2(0.0, -MARGIN))
+        .anchor(Align2::CENTER_BOTTOM, egui::vec2(0.0, -ABOVE_NOTICES))
         .constrain(true)
         .show(ui.ctx(), |ui| {
             ui.set_width(width);

@@ -1,10 +1,10 @@
 //! A load on a thread of its own.
 
+use crate::scene::guard::guarded;
 use crate::scene::progress::SeenFile;
 use crate::scene::{Camera, Progress, Scene};
 use std::error::Error;
 use std::fmt;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -59,8 +59,8 @@ impl Load {
         let load = Self { progress, shared: Arc::default() };
         let shared = Arc::clone(&load.shared);
         let work = move || {
-            let outcome = catch_unwind(AssertUnwindSafe(work));
-            shared.end(outcome.unwrap_or_else(|_| Err("loading stopped by a fault of the program".into())));
+            let outcome = guarded(work);
+            shared.end(outcome.unwrap_or_else(|fault| Err(format!("loading stopped by a fault: {fault}").into())));
         };
         let thread = std::thread::Builder::new().name("loader".to_owned()).stack_size(STACK).spawn(work);
         if let Err(error) = thread {

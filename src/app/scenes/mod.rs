@@ -102,7 +102,7 @@ pub enum Wish {
     OpenFile(PathBuf),
     /// Load the scene once more.
     Reload,
-    /// Give up what is being loaded.
+    /// Give up what is being loaded; where nothing is, what there is to read was read.
     Cancel,
     /// The failure was read.
     DismissFailure,
@@ -212,9 +212,10 @@ impl Scenes {
         self.watch.files(arrival.files.clone());
     }
 
-    /// Opens a scene file, or the one in a folder.
+    /// Opens a scene file, or the one in a folder; what is shown already is reloaded.
     pub fn open(&mut self, path: &Path) {
-        self.load(path, Errand::Open);
+        let is_shown = self.file.as_deref().is_some_and(|file| is_same(file, path));
+        self.load(path, if is_shown { Errand::Reload } else { Errand::Open });
     }
 
     /// Loads what is shown once more, if it is of a file.
@@ -272,7 +273,10 @@ impl Scenes {
             Wish::OpenFile(file) => self.open(&file),
             Wish::Reload => self.reload(),
             Wish::Cancel => {
-                self.cancel();
+                if !self.cancel() {
+                    self.failure = None;
+                    self.dismiss_warnings();
+                }
             }
             Wish::DismissFailure => self.failure = None,
             Wish::DismissWarnings => self.dismiss_warnings(),
@@ -424,6 +428,11 @@ fn load_file(path: &Path, options: &LoadOptions) -> Outcome {
         files: options.progress.files(),
         size: None,
     })
+}
+
+/// Whether two paths name one file, links aside.
+fn is_same(a: &Path, b: &Path) -> bool {
+    std::path::absolute(a).is_ok_and(|a| std::path::absolute(b).is_ok_and(|b| a == b))
 }
 
 fn name(file: &Path) -> String {
@@ -591,10 +600,21 @@ mod tests {
         let (mut scenes, woken) = scenes();
         assert!(!scenes.cancel());
         scenes.open(&file);
-        assert!(scenes.cancel() && !scenes.is_loading());
+        assert!(scenes.is_loading() && scenes.cancel() && !scenes.is_loading());
         scenes.open(&file);
         opened(&mut scenes, &woken);
         assert!(scenes.report(Instant::now()).failure.is_none() && scenes.news().is_none());
+    }
+
+    #[test]
+    fn what_is_shown_is_not_opened_but_reloaded() {
+        let folder = Folder::new();
+        let file = folder.write("ball.json", ball("[0.5, 0, 0]"));
+        let (mut scenes, woken) = scenes();
+        scenes.open(&file);
+        opened(&mut scenes, &woken);
+        scenes.open(&file);
+        reloaded(&mut scenes, &woken);
     }
 
     #[test]

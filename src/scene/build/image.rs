@@ -4,6 +4,7 @@ use crate::scene::desc::map::shortened;
 use crate::scene::desc::problem::{Outcome, Problem, Warnings};
 use crate::scene::desc::{ImageDesc, ImageSource};
 use crate::scene::files::{CANCELLED, FileError, Files};
+use crate::scene::guard;
 use crate::scene::limits::{Limits, exceeded};
 use crate::scene::material::Encoding;
 use crate::scene::texels::Texels;
@@ -12,7 +13,6 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::io::Cursor;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -186,7 +186,7 @@ impl ImageStore {
 
 /// The decoders are meant never to panic on damaged files; should one do so, only its image is lost.
 fn guarded<T>(decode: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, DecodeError> {
-    catch_unwind(AssertUnwindSafe(decode)).unwrap_or(Err(DecodeError::Panicked))
+    guard::guarded(decode).unwrap_or(Err(DecodeError::Panicked))
 }
 
 /// A decoder that has read an image's header.

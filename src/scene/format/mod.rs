@@ -14,9 +14,8 @@ use super::desc::SceneDesc;
 use super::desc::problem::{At, Outcome, Warnings};
 use super::error::{Place, SceneError, Warning};
 use super::files::{FileError, Files};
+use super::guard::guarded;
 use super::{Limits, Progress, Scene};
-use std::any::Any;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// How a scene is loaded.
@@ -108,8 +107,8 @@ pub fn load_text(name: &str, text: &str, options: &LoadOptions) -> Result<Scene,
 fn read(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, SceneError> {
     let place = || whole(input.path);
     // The readers and the libraries below them are meant never to panic; should one, this scene is all that is lost.
-    let built = catch_unwind(AssertUnwindSafe(|| build(input, files, options)))
-        .unwrap_or_else(|panic| Err(SceneError::Broken { place: place(), message: said(&*panic) }));
+    let built = guarded(|| build(input, files, options))
+        .unwrap_or_else(|message| Err(SceneError::Broken { place: place(), message }));
     // Whoever was told to stop may have made a warning or an error of it.
     if options.progress.is_cancelled() {
         return Err(SceneError::Cancelled { place: place() });
@@ -133,12 +132,6 @@ fn build(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, Sc
     let mut builder = SceneBuilder::new(input.path, format.name, files, options.limits.clone());
     (format.read)(input, &mut builder)?;
     builder.finish().ok_or_else(|| SceneError::Cancelled { place: whole(input.path) })
-}
-
-/// What a panic says of itself.
-fn said(panic: &dyn Any) -> String {
-    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "it gives no reason".to_owned())
 }
 
 /// Reads a file of any format into a scene under construction.
