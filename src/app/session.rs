@@ -8,7 +8,7 @@ use super::history::History;
 use super::input::{Command, Keys};
 use super::layer::Layer;
 use super::lowering::{lowered, presets_below};
-use super::overlay::{self, Change, Showing, Shown, Tuning, View};
+use super::overlay::{self, Change, Notices, Showing, Shown, Tuning, View};
 use super::pacing::{Limiter, Rates};
 use super::present::Presenter;
 use super::steering::Steering;
@@ -60,6 +60,7 @@ pub struct Session {
     history: History,
     stats: FrameStats,
     shown: Shown,
+    notices: Notices,
     posted: Option<Job>,
     /// What the last frame shows, and with how many samples a pixel if it was refined.
     traced: Option<(Job, Option<u32>)>,
@@ -115,6 +116,7 @@ impl Session {
             history: History::default(),
             stats: FrameStats::default(),
             shown: Shown::default(),
+            notices: Notices::default(),
             posted: None,
             traced: None,
             steering: Steering::new(presets_below(&options.settings)),
@@ -368,6 +370,7 @@ impl Session {
 
     fn paint_overlay(&mut self, now: Instant) {
         let resting = self.history.is_resting(now) && !self.tracer.is_busy();
+        self.notices.expire(now);
         let view = View {
             scene: &self.scene,
             settings: &self.settings,
@@ -386,6 +389,7 @@ impl Session {
                 drawn: self.traced.as_ref().map_or(&self.settings, |(job, _)| &job.settings),
                 is_elsewhere: self.survey.as_ref().is_some_and(|survey| survey.camera != self.walker.camera()),
             },
+            notices: self.notices.current(),
         };
         let mut changes = Vec::new();
         let shown = self.shown;
@@ -394,6 +398,7 @@ impl Session {
             changes.extend(overlay::show(ui, &view, shown));
         });
         self.figures.met(now);
+        self.notices.next_end().into_iter().for_each(|end| self.figures.demand_at(end));
         let Some(painting) = painting else { return };
         self.presenter.set_overlay(&self.gpu, &painting.job, painting.textures);
         if let Some(delay) = painting.again {

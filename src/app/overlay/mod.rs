@@ -6,9 +6,11 @@
 mod controls;
 mod figures;
 mod graph;
+pub mod notice;
 pub mod theme;
 mod tuning;
 
+pub use notice::{Notice, Notices};
 pub use tuning::{Tuning, usual_bound};
 
 use super::at_rest::SAMPLES;
@@ -54,6 +56,8 @@ pub struct View<'a> {
     pub invert_look: bool,
     /// What is known of other settings.
     pub tuning: Tuning<'a>,
+    /// What was just done or went wrong.
+    pub notices: &'a [Notice],
 }
 
 /// What the picture is, against what the settings ask for.
@@ -144,6 +148,8 @@ pub enum Change {
 /// Draws the overlay and returns what was asked for, in order.
 pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
     let mut changes = Vec::new();
+    // They answer what was just asked for: whoever hides the rest wants to know all the same.
+    notice::show(ui, view.notices);
     if !shown.overlay {
         return changes;
     }
