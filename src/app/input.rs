@@ -39,6 +39,8 @@ pub enum Command {
     ToggleOverlay,
     /// Back to where the walk started.
     Home,
+    /// Walk instead of flying, or the reverse.
+    ToggleWalking,
 }
 
 /// Keys that act while held. Codes name positions, so that WASD is the same block of keys on every layout.
@@ -63,16 +65,18 @@ pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::Tab, false, Command::TogglePanel),
     (KeyCode::KeyH, false, Command::ToggleOverlay),
     (KeyCode::Home, false, Command::Home),
+    (KeyCode::KeyG, false, Command::ToggleWalking),
 ];
 
 /// The help shown in the overlay: keys and what they do.
 pub const HELP: &[(&str, &str)] = &[
-    ("W A S D", "walk"),
-    ("Space, C", "up, down"),
+    ("W A S D", "move"),
+    ("Space, C", "up, down; walking, Space jumps"),
     ("Shift, Alt", "faster, slower"),
     ("Wheel", "change the speed"),
     ("Click", "look with the mouse"),
     ("Esc", "let the mouse go"),
+    ("G", "walk or fly"),
     ("Home", "back to the start"),
     ("F1, Tab", "this panel"),
     ("H", "hide everything"),

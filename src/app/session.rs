@@ -14,7 +14,7 @@ use super::present::Presenter;
 use super::steering::Steering;
 use super::survey::{self, End, Survey};
 use super::tracer::{Job, TracedFrame, Tracer, Word};
-use super::walker::{self, Walker};
+use super::walker::Walker;
 use super::{AppExit, AppOptions};
 use crate::measure::metric::{METRICS, metric};
 use crate::measure::tune::{Bound, Task};
@@ -39,6 +39,8 @@ const DEVICE_TRIAL: Duration = Duration::from_secs(10);
 const MAX_PIXELS: f64 = 7680.0 * 4320.0;
 /// A search tries no new settings after this time.
 const SEARCH_BUDGET: Duration = Duration::from_secs(30);
+/// What is told where a walker does not fit.
+const NO_ROOM: &str = "There is no room to walk here: flying on";
 /// Pixels of smooth scrolling that count as one notch of a wheel.
 const PIXELS_PER_NOTCH: f64 = 40.0;
 
@@ -98,7 +100,6 @@ impl Session {
         let gpu = Gpu::new(&window, &display).map_err(AppError::NoDisplay)?;
         let millihertz = window.current_monitor().and_then(|monitor| monitor.refresh_rate_millihertz());
         let rates = Rates::new(millihertz, gpu.is_software);
-        let bounds = options.scene.objects.iter().map(|object| object.bounds);
         let now = Instant::now();
         let mut session = Self {
             tracer: Tracer::start(options.scene.clone(), rates.display, word)?,
@@ -109,7 +110,7 @@ impl Session {
             display,
             scene: options.scene.clone(),
             settings: options.settings.clone(),
-            walker: Walker::new(options.camera, walker::surroundings(bounds, options.camera.eye)),
+            walker: Walker::in_scene(&options.scene, options.camera),
             keys: Keys::default(),
             capture: Capture::default(),
             pointer: DVec2::ZERO,
@@ -224,10 +225,23 @@ impl Session {
             Some(Command::TogglePanel) => self.shown = self.shown.with_panel_toggled(),
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
             Some(Command::Home) => self.walker.go_home(),
+            Some(Command::ToggleWalking) => self.toggle_walking(now),
             Some(Command::Quit) | None => return false,
         }
         self.repaint(now);
         false
+    }
+
+    /// Fly or walk. The speed that held keys had so far was that of the other.
+    fn toggle_walking(&mut self, now: Instant) {
+        if !self.walker.toggle_walking(&self.scene.geometry) {
+            self.notices.warn(now, NO_ROOM);
+        } else if self.walker.is_walking() {
+            self.notices.tell(now, "Walking: Space jumps, G flies");
+        } else {
+            self.notices.tell(now, "Flying: G walks");
+        }
+        self.step(now);
     }
 
     /// The left button; true when the picture took it.
@@ -300,10 +314,12 @@ impl Session {
     /// Walks up to `now`, as far as keys were held until here.
     fn step(&mut self, now: Instant) {
         let motion = self.keys.motion();
-        if let Some(before) = self.stepped {
-            self.walker.walk(motion, now.saturating_duration_since(before).as_secs_f64());
+        let passed = self.stepped.map_or(Duration::ZERO, |before| now.saturating_duration_since(before));
+        if !self.walker.advance(&self.scene.geometry, motion, passed.as_secs_f64()) {
+            self.notices.warn(now, NO_ROOM);
+            self.repaint(now);
         }
-        self.stepped = motion.is_moving().then_some(now);
+        self.stepped = (motion.is_moving() || self.walker.is_under_way()).then_some(now);
     }
 
     /// Asks for a frame when it would differ from the one last asked for. Says when motion will have stopped, if that
@@ -379,6 +395,8 @@ impl Session {
             resting,
             size: self.traced.as_ref().map_or(picture_size(self.gpu.size()), |(job, _)| (job.width, job.height)),
             showing: self.showing(),
+            walking: self.walker.is_walking(),
+            eye_height: self.walker.eye_height(),
             speed: self.walker.speed(),
             fov: self.walker.fov(),
             sensitivity: self.walker.sensitivity,
@@ -433,6 +451,12 @@ impl Session {
             }
             Change::Home => self.walker.go_home(),
             Change::Speed(speed) => self.walker.set_speed(speed),
+            Change::Walking(_) => self.toggle_walking(Instant::now()),
+            Change::EyeHeight(height) => {
+                if !self.walker.set_eye_height(&self.scene.geometry, height) {
+                    self.notices.warn(Instant::now(), "There is no room for that eye height here");
+                }
+            }
             Change::Fov(fov) => self.walker.set_fov(fov),
             Change::Sensitivity(sensitivity) => self.walker.sensitivity = sensitivity,
             Change::InvertLook(invert) => self.walker.invert_look = invert,

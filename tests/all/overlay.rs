@@ -66,6 +66,8 @@ impl Panel {
             resting: false,
             size: (1280, 720),
             showing: self.showing,
+            walking: false,
+            eye_height: 1.6,
             speed: 1.5,
             fov: 60.0,
             sensitivity: 0.12,

@@ -46,7 +46,11 @@ pub struct View<'a> {
     pub size: (u32, u32),
     /// What the picture is.
     pub showing: Showing,
-    /// Walking speed in metres a second.
+    /// On foot and not flying.
+    pub walking: bool,
+    /// Height of the eye above the floor in metres, on foot.
+    pub eye_height: f64,
+    /// Speed in metres a second.
     pub speed: f64,
     /// Vertical field of view in degrees.
     pub fov: f32,
@@ -127,7 +131,11 @@ pub enum Change {
     Camera(usize),
     /// Go back to the start.
     Home,
-    /// Walk at this speed, metres a second.
+    /// Whether to walk; else fly.
+    Walking(bool),
+    /// Walk with the eye at this height, metres.
+    EyeHeight(f64),
+    /// Go at this speed, metres a second.
     Speed(f64),
     /// See this vertical field of view, degrees.
     Fov(f32),
