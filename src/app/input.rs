@@ -45,6 +45,8 @@ pub enum Command {
     Reload,
     /// Tell of what is under the pointer.
     Inspect,
+    /// Walk instead of flying, or the reverse.
+    ToggleWalking,
 }
 
 /// Keys that act while held. Codes name positions, so that WASD is the same block of keys on every layout.
@@ -72,16 +74,18 @@ pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::KeyO, true, Command::Open),
     (KeyCode::F5, false, Command::Reload),
     (KeyCode::KeyI, false, Command::Inspect),
+    (KeyCode::KeyG, false, Command::ToggleWalking),
 ];
 
 /// The help shown in the overlay: keys and what they do.
 pub const HELP: &[(&str, &str)] = &[
-    ("W A S D", "walk"),
-    ("Space, C", "up, down"),
+    ("W A S D", "move"),
+    ("Space, C", "up, down; walking, Space jumps"),
     ("Shift, Alt", "faster, slower"),
     ("Wheel", "change the speed"),
     ("Click", "look with the mouse"),
     ("Esc", "let the mouse go; stop loading"),
+    ("G", "walk or fly"),
     ("Home", "back to the start"),
     ("F1, Tab", "this panel"),
     ("H", "hide everything"),

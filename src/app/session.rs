@@ -10,7 +10,7 @@ use super::inspection::{self, Inspection};
 use super::layer::Layer;
 use super::lighting::Lighting;
 use super::lowering::{lowered, presets_below};
-use super::overlay::{self, Change, Showing, Shown, Tuning, View};
+use super::overlay::{self, Change, Notices, Showing, Shown, Tuning, View};
 use super::pacing::{Limiter, Rates};
 use super::present::Presenter;
 use super::scenes::{Arrival, News, Scenes, Wish};
@@ -18,7 +18,7 @@ use super::steering::Steering;
 use super::survey::{self, End, Survey};
 use super::tracer::{Job, TracedFrame, Tracer};
 use super::viewer::Call;
-use super::walker::{self, Walker};
+use super::walker::Walker;
 use super::{AppExit, AppOptions, Opening};
 use crate::measure::metric::{METRICS, metric};
 use crate::measure::tune::{Bound, Task};
@@ -45,6 +45,8 @@ const MAX_PIXELS: f64 = 7680.0 * 4320.0;
 const SEARCH_BUDGET: Duration = Duration::from_secs(30);
 /// Between two looks at how far a load has come.
 const TELL: Duration = Duration::from_millis(100);
+/// What is told where a walker does not fit.
+const NO_ROOM: &str = "There is no room to walk here: flying on";
 /// Pixels of smooth scrolling that count as one notch of a wheel.
 const PIXELS_PER_NOTCH: f64 = 40.0;
 
@@ -71,6 +73,7 @@ pub struct Session {
     history: History,
     stats: FrameStats,
     shown: Shown,
+    notices: Notices,
     posted: Option<Job>,
     /// What the last frame shows, and with how many samples a pixel if it was refined.
     traced: Option<(Job, Option<u32>)>,
@@ -132,7 +135,7 @@ impl Session {
             window,
             display,
             settings: options.settings.clone(),
-            walker: Walker::new(camera, surroundings(&scene, &camera)),
+            walker: Walker::in_scene(&scene, camera),
             scenes,
             lighting: Lighting::of(&scene),
             lit: Arc::clone(&scene),
@@ -144,6 +147,7 @@ impl Session {
             history: History::default(),
             stats: FrameStats::default(),
             shown: Shown::default(),
+            notices: Notices::default(),
             posted: None,
             traced: None,
             steering: Steering::new(presets_below(&options.settings)),
@@ -269,10 +273,23 @@ impl Session {
             Some(Command::TogglePanel) => self.shown = self.shown.with_panel_toggled(),
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
             Some(Command::Home) => self.walker.go_home(),
+            Some(Command::ToggleWalking) => self.toggle_walking(now),
             Some(Command::Quit) | None => return false,
         }
         self.repaint(now);
         false
+    }
+
+    /// Fly or walk. The speed that held keys had so far was that of the other.
+    fn toggle_walking(&mut self, now: Instant) {
+        if !self.walker.toggle_walking(&self.scene.geometry) {
+            self.notices.warn(now, NO_ROOM);
+        } else if self.walker.is_walking() {
+            self.notices.tell(now, "Walking: Space jumps, G flies");
+        } else {
+            self.notices.tell(now, "Flying: G walks");
+        }
+        self.step(now);
     }
 
     /// The left button; true when the picture took it.
@@ -335,7 +352,7 @@ impl Session {
 
     /// Goes to another scene.
     fn enter(&mut self, Arrival { scene, camera, size, .. }: Arrival) {
-        self.walker.enter(camera, surroundings(&scene, &camera));
+        self.walker.enter(&scene, camera);
         self.lighting = Lighting::of(&scene);
         if let Some((width, height)) = size {
             // The window stays as it is where the system does not let it be resized.
@@ -409,10 +426,12 @@ impl Session {
     /// Walks up to `now`, as far as keys were held until here.
     fn step(&mut self, now: Instant) {
         let motion = self.keys.motion();
-        if let Some(before) = self.stepped {
-            self.walker.walk(motion, now.saturating_duration_since(before).as_secs_f64());
+        let passed = self.stepped.map_or(Duration::ZERO, |before| now.saturating_duration_since(before));
+        if !self.walker.advance(&self.scene.geometry, motion, passed.as_secs_f64()) {
+            self.notices.warn(now, NO_ROOM);
+            self.repaint(now);
         }
-        self.stepped = motion.is_moving().then_some(now);
+        self.stepped = (motion.is_moving() || self.walker.is_under_way()).then_some(now);
     }
 
     /// Asks for a frame when it would differ from the one last asked for. Says when motion will have stopped, if that
@@ -480,6 +499,7 @@ impl Session {
 
     fn paint_overlay(&mut self, now: Instant) {
         let resting = self.history.is_resting(now) && !self.tracer.is_busy();
+        self.notices.expire(now);
         let view = View {
             scene: &self.scene,
             settings: &self.settings,
@@ -488,6 +508,8 @@ impl Session {
             resting,
             size: self.traced.as_ref().map_or(picture_size(self.gpu.size()), |(job, _)| (job.width, job.height)),
             showing: self.showing(),
+            walking: self.walker.is_walking(),
+            eye_height: self.walker.eye_height(),
             speed: self.walker.speed(),
             fov: self.walker.fov(),
             sensitivity: self.walker.sensitivity,
@@ -503,6 +525,7 @@ impl Session {
             inspection: self.inspection.as_ref(),
             stands: self.traced.as_ref().map(|(job, _)| job.camera).filter(|camera| *camera == self.walker.camera()),
             crosshair: self.capture.is_active(),
+            notices: self.notices.current(),
         };
         let mut changes = Vec::new();
         let shown = self.shown;
@@ -511,6 +534,7 @@ impl Session {
             changes.extend(overlay::show(ui, &view, shown));
         });
         self.figures.met(now);
+        self.notices.next_end().into_iter().for_each(|end| self.figures.demand_at(end));
         let Some(painting) = painting else { return };
         self.presenter.set_overlay(&self.gpu, &painting.job, painting.textures);
         if let Some(delay) = painting.again {
@@ -548,6 +572,12 @@ impl Session {
             }
             Change::Home => self.walker.go_home(),
             Change::Speed(speed) => self.walker.set_speed(speed),
+            Change::Walking(_) => self.toggle_walking(Instant::now()),
+            Change::EyeHeight(height) => {
+                if !self.walker.set_eye_height(&self.scene.geometry, height) {
+                    self.notices.warn(Instant::now(), "There is no room for that eye height here");
+                }
+            }
             Change::Fov(fov) => self.walker.set_fov(fov),
             Change::Sensitivity(sensitivity) => self.walker.sensitivity = sensitivity,
             Change::InvertLook(invert) => self.walker.invert_look = invert,
@@ -624,11 +654,6 @@ fn picture_size((width, height): (u32, u32)) -> (u32, u32) {
     let scale = (MAX_PIXELS / pixels).sqrt();
     let scaled = |side: u32| ((f64::from(side) * scale) as u32).max(1);
     (scaled(width), scaled(height))
-}
-
-/// How large what is around the camera is, in metres.
-fn surroundings(scene: &Scene, camera: &Camera) -> f64 {
-    walker::surroundings(scene.objects.iter().map(|object| object.bounds), camera.eye)
 }
 
 fn title(scene: &Scene) -> String {

@@ -10,6 +10,7 @@ pub mod bvh;
 pub mod holes;
 #[cfg(test)]
 mod laws;
+mod nearest;
 pub mod packet;
 pub mod primitive;
 pub mod ray;

@@ -5,7 +5,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use raywalk::app::history::History;
 use raywalk::app::inspection::Inspection;
 use raywalk::app::lighting::Dial;
-use raywalk::app::overlay::{self, Change, Showing, Shown, Tuning, View, theme};
+use raywalk::app::overlay::{self, Change, Notices, Showing, Shown, Tuning, View, theme};
 use raywalk::app::scenes::{Failure, Loading, Report, Wish};
 use raywalk::app::survey::{End, Point, Survey};
 use raywalk::geometry::{Aabb, Geometry};
@@ -51,6 +51,7 @@ struct Panel {
     report: Report<'static>,
     lights: Vec<Dial>,
     inspection: Option<Inspection>,
+    notices: Notices,
     changes: Vec<Change>,
 }
 
@@ -71,6 +72,7 @@ impl Panel {
             report: Report::default(),
             lights: Vec::new(),
             inspection: None,
+            notices: Notices::default(),
             changes: Vec::new(),
         }
     }
@@ -84,6 +86,8 @@ impl Panel {
             resting: false,
             size: (1280, 720),
             showing: self.showing,
+            walking: false,
+            eye_height: 1.6,
             speed: 1.5,
             fov: 60.0,
             sensitivity: 0.12,
@@ -99,6 +103,7 @@ impl Panel {
             inspection: self.inspection.as_ref(),
             stands: Some(Camera::default()),
             crosshair: true,
+            notices: self.notices.current(),
         };
         let changes = overlay::show(ui, &view, self.shown);
         for change in &changes {
@@ -233,6 +238,19 @@ fn the_status_line_says_rate_time_and_size() {
     harness.state_mut().shown.overlay = false;
     harness.run();
     assert!(harness.query_by_label_contains("1280x720").is_none(), "everything is hidden");
+}
+
+#[test]
+fn notices_are_read_even_when_all_else_is_hidden() {
+    let mut panel = Panel::new();
+    panel.shown.overlay = false;
+    panel.notices.tell(Instant::now(), "camera copied");
+    panel.notices.warn(Instant::now(), "what was pasted is no camera: ".repeat(12));
+    let harness = panel.harness();
+    harness.get_by_label("camera copied");
+    let long = harness.get_by_label_contains("what was pasted").rect();
+    assert!(long.width() < 700.0 && long.height() > 30.0, "it breaks into lines: {long:?}");
+    assert!(long.bottom() < 1400.0);
 }
 
 #[test]

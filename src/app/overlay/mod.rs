@@ -8,10 +8,12 @@ mod figures;
 mod graph;
 mod inspection;
 mod lights;
+pub mod notice;
 mod scenes;
 pub mod theme;
 mod tuning;
 
+pub use notice::{Notice, Notices};
 pub use tuning::{Tuning, usual_bound};
 
 use super::at_rest::SAMPLES;
@@ -48,7 +50,11 @@ pub struct View<'a> {
     pub size: (u32, u32),
     /// What the picture is.
     pub showing: Showing,
-    /// Walking speed in metres a second.
+    /// On foot and not flying.
+    pub walking: bool,
+    /// Height of the eye above the floor in metres, on foot.
+    pub eye_height: f64,
+    /// Speed in metres a second.
     pub speed: f64,
     /// Vertical field of view in degrees.
     pub fov: f32,
@@ -68,6 +74,8 @@ pub struct View<'a> {
     pub stands: Option<Camera>,
     /// Whether the pointer is captured, and what it points at is in the middle.
     pub crosshair: bool,
+    /// What was just done or went wrong.
+    pub notices: &'a [Notice],
 }
 
 /// What the picture is, against what the settings ask for.
@@ -137,7 +145,11 @@ pub enum Change {
     Camera(usize),
     /// Go back to the start.
     Home,
-    /// Walk at this speed, metres a second.
+    /// Whether to walk; else fly.
+    Walking(bool),
+    /// Walk with the eye at this height, metres.
+    EyeHeight(f64),
+    /// Go at this speed, metres a second.
     Speed(f64),
     /// See this vertical field of view, degrees.
     Fov(f32),
@@ -167,6 +179,8 @@ pub enum Change {
 pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
     let mut changes = Vec::new();
     scenes::boxes(ui, view, &mut changes);
+    // They answer what was just asked for: whoever hides the rest wants to know all the same.
+    notice::show(ui, view.notices);
     if !shown.overlay {
         return changes;
     }

@@ -11,7 +11,7 @@ mod model;
 mod object;
 mod parts;
 mod placement;
-mod probe;
+pub mod probe;
 
 pub use bounds::finite_bounds;
 
