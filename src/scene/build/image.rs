@@ -3,7 +3,8 @@
 use crate::scene::desc::map::shortened;
 use crate::scene::desc::problem::{Outcome, Problem, Warnings};
 use crate::scene::desc::{ImageDesc, ImageSource};
-use crate::scene::files::{FileError, Files};
+use crate::scene::files::{CANCELLED, FileError, Files};
+use crate::scene::guard;
 use crate::scene::limits::{Limits, exceeded};
 use crate::scene::material::Encoding;
 use crate::scene::texels::Texels;
@@ -13,7 +14,6 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::io::Cursor;
 use std::ops::Deref;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -26,6 +26,8 @@ enum DecodeError {
     Edge(u64),
     #[error("the scene's textures have {}", exceeded("texture-bytes", *.0))]
     Budget(u64),
+    #[error("{CANCELLED}")]
+    Cancelled,
     #[error("the decoder gave up; the file is damaged")]
     Panicked,
     #[error("it has no pixels")]
@@ -152,6 +154,8 @@ impl ImageStore {
 
     /// Decodes images side by side. What they may take is shared out beforehand, by what their headers say.
     fn decode(&mut self, waiting: Vec<Waiting>) {
+        let progress = self.files.progress();
+        progress.begin("decoding textures", waiting.len());
         let budgets: Vec<Result<u64, DecodeError>> = waiting
             .iter()
             .map(|image| {
@@ -164,7 +168,9 @@ impl ImageStore {
             })
             .collect();
         let decode = |(image, budget): (Waiting, Result<u64, DecodeError>)| {
-            let texels = budget.and_then(|budget| guarded(|| decode(&image, budget)));
+            let allowed = if progress.is_cancelled() { Err(DecodeError::Cancelled) } else { budget };
+            let texels = allowed.and_then(|budget| guarded(|| decode(&image, budget)));
+            progress.advance();
             (image.key, texels.map(Arc::new).map_err(|error| error.to_string()))
         };
         let decoded: Vec<_> = waiting.into_par_iter().zip(budgets).map(decode).collect();
@@ -198,7 +204,7 @@ impl ImageStore {
 
 /// The decoders are meant never to panic on damaged files; should one do so, only its image is lost.
 fn guarded<T>(decode: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, DecodeError> {
-    catch_unwind(AssertUnwindSafe(decode)).unwrap_or(Err(DecodeError::Panicked))
+    guard::guarded(decode).unwrap_or(Err(DecodeError::Panicked))
 }
 
 /// A decoder that has read an image's header.
