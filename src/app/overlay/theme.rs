@@ -16,6 +16,17 @@ pub const LINE: Color32 = Color32::from_rgb(52, 58, 70);
 /// Something to mind.
 pub const WARNING: Color32 = Color32::from_rgb(240, 178, 84);
 
+/// The parts of a bar, in order: viridis from dark to light, so that neighbours differ in lightness.
+pub const PARTS: [Color32; 7] = [
+    Color32::from_rgb(0x6b, 0x2a, 0x86),
+    Color32::from_rgb(0x5d, 0x55, 0xb0),
+    Color32::from_rgb(0x31, 0x68, 0x8e),
+    Color32::from_rgb(0x21, 0x91, 0x8c),
+    Color32::from_rgb(0x35, 0xb7, 0x79),
+    Color32::from_rgb(0x90, 0xd7, 0x43),
+    Color32::from_rgb(0xfd, 0xe7, 0x25),
+];
+
 /// The colour of a promise: the calmer, the nearer to the reference picture.
 pub fn promise_color(promise: Promise) -> Color32 {
     match promise {
