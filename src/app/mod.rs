@@ -6,17 +6,21 @@
 //!
 //! Architecture invariant: with nothing moved and nothing changed, nothing is traced, drawn or woken up for.
 
+pub mod config;
 pub mod error;
 pub mod history;
 pub mod input;
 pub mod overlay;
 pub mod present;
+pub mod screenshot;
 pub mod survey;
 pub mod walker;
 
 mod at_rest;
 mod capture;
+mod desktop;
 mod display;
+mod errands;
 mod gpu;
 mod layer;
 mod look;
@@ -28,10 +32,14 @@ mod steering;
 mod tracer;
 mod viewer;
 
+pub use config::UI_SCALES;
 pub use error::AppError;
 
+use crate::picture::NumberedName;
 use crate::scene::{Camera, Scene};
 use crate::settings::Settings;
+use config::{Config, Store};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What to open the window on.
@@ -39,12 +47,22 @@ use std::sync::Arc;
 pub struct AppOptions {
     /// What to walk through.
     pub scene: Arc<Scene>,
+    /// The file it was read from; `None` for the built-in scene.
+    pub file: Option<PathBuf>,
     /// Where the walk starts.
     pub camera: Camera,
     /// How frames are traced at first.
     pub settings: Settings,
     /// Size of the window's inside in physical pixels.
     pub size: (u32, u32),
+    /// What the user's last window left, and where to keep what this one leaves; without a store, nothing is kept.
+    pub config: Config,
+    /// See `config`.
+    pub store: Option<Store>,
+    /// The window opens as the last one was, whatever `size` says.
+    pub as_before: bool,
+    /// Where screenshots go.
+    pub screenshots: NumberedName,
 }
 
 /// Where things stood when the user closed the window.
@@ -54,6 +72,8 @@ pub struct AppExit {
     pub camera: Camera,
     /// The last settings.
     pub settings: Settings,
+    /// What could not be done at the end, one line each.
+    pub warnings: Vec<String>,
 }
 
 /// Opens the window and runs until it is closed. To be called on the main thread, once in a process.

@@ -2,15 +2,19 @@
 
 use super::at_rest::REST;
 use super::capture::{Capture, PointerHost};
+use super::config::{Keeper, UI_SCALES, WindowState};
+use super::desktop;
+use super::errands::{Errands, News};
 use super::error::AppError;
 use super::gpu::{Gpu, Target};
 use super::history::History;
 use super::input::{Command, Keys};
 use super::layer::Layer;
 use super::lowering::{lowered, presets_below};
-use super::overlay::{self, Change, Showing, Shown, Tuning, View};
+use super::overlay::{self, Change, Notices, Showing, Shown, Tuning, View};
 use super::pacing::{Limiter, Rates};
 use super::present::Presenter;
+use super::screenshot::{self, Camerawork, Place, Shot};
 use super::steering::Steering;
 use super::survey::{self, End, Survey};
 use super::tracer::{Job, TracedFrame, Tracer, Word};
@@ -18,13 +22,15 @@ use super::walker::{self, Walker};
 use super::{AppExit, AppOptions};
 use crate::measure::metric::{METRICS, metric};
 use crate::measure::tune::{Bound, Task};
+use crate::picture::NumberedName;
 use crate::render::FrameStats;
 use crate::scene::{Camera, Scene};
 use crate::settings::Settings;
 use glam::DVec2;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use winit::dpi::{PhysicalPosition, PhysicalSize};
+use winit::dpi::PhysicalPosition;
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
 use winit::window::{CursorGrabMode, Window};
@@ -39,6 +45,8 @@ const DEVICE_TRIAL: Duration = Duration::from_secs(10);
 const MAX_PIXELS: f64 = 7680.0 * 4320.0;
 /// A search tries no new settings after this time.
 const SEARCH_BUDGET: Duration = Duration::from_secs(30);
+/// A step of the size of panel and text.
+const UI_STEP: f32 = 1.1;
 /// Pixels of smooth scrolling that count as one notch of a wheel.
 const PIXELS_PER_NOTCH: f64 = 40.0;
 
@@ -51,6 +59,7 @@ pub struct Session {
     window: Arc<Window>,
     display: OwnedDisplayHandle,
     scene: Arc<Scene>,
+    file: Option<PathBuf>,
     settings: Settings,
     walker: Walker,
     keys: Keys,
@@ -60,6 +69,12 @@ pub struct Session {
     history: History,
     stats: FrameStats,
     shown: Shown,
+    notices: Notices,
+    keeper: Keeper,
+    ui_scale: f32,
+    errands: Errands,
+    screenshots: NumberedName,
+    camerawork: Camerawork,
     posted: Option<Job>,
     /// What the last frame shows, and with how many samples a pixel if it was refined.
     traced: Option<(Job, Option<u32>)>,
@@ -86,11 +101,12 @@ impl Session {
     pub fn open(
         event_loop: &ActiveEventLoop,
         options: &AppOptions,
-        word: impl Fn(Word) + Send + 'static,
+        word: impl Fn(Word) + Clone + Send + 'static,
     ) -> Result<Self, AppError> {
-        let attributes = Window::default_attributes()
-            .with_title(format!("raywalk - {}", options.scene.name))
-            .with_inner_size(PhysicalSize::new(options.size.0, options.size.1));
+        let attributes = Window::default_attributes().with_title(format!("raywalk - {}", options.scene.name));
+        let size = WindowState { size: options.size, ..WindowState::default() };
+        let place = options.config.window.filter(|_| options.as_before).unwrap_or(size);
+        let attributes = desktop::placed(attributes, place, event_loop);
         let window = event_loop.create_window(attributes).map_err(|error| AppError::NoDisplay(error.to_string()))?;
         let window = Arc::new(window);
         let display = event_loop.owned_display_handle();
@@ -99,22 +115,36 @@ impl Session {
         let rates = Rates::new(millihertz, gpu.is_software);
         let bounds = options.scene.objects.iter().map(|object| object.bounds);
         let now = Instant::now();
+        let mut keeper = Keeper::new(options.store.clone(), options.config.clone(), &options.settings);
+        keeper.open_window(place);
+        let config = &keeper.config;
+        let mut walker = Walker::new(options.camera, walker::surroundings(bounds, options.camera.eye));
+        walker.invert_look = config.invert_look;
+        walker.sensitivity = config.sensitivity.unwrap_or(walker.sensitivity);
+        let news = word.clone();
         let mut session = Self {
             tracer: Tracer::start(options.scene.clone(), rates.display, word)?,
-            layer: Layer::new(&gpu, &window),
+            layer: Layer::new(&gpu, &window, config.ui_scale),
             presenter: Presenter::new(&gpu, options.settings.present),
             gpu,
             window,
             display,
             scene: options.scene.clone(),
+            file: options.file.clone(),
             settings: options.settings.clone(),
-            walker: Walker::new(options.camera, walker::surroundings(bounds, options.camera.eye)),
+            walker,
             keys: Keys::default(),
             capture: Capture::default(),
             pointer: DVec2::ZERO,
             history: History::default(),
             stats: FrameStats::default(),
-            shown: Shown::default(),
+            shown: Shown { panel: config.panel, ..Shown::default() },
+            notices: Notices::default(),
+            ui_scale: config.ui_scale,
+            keeper,
+            errands: Errands::start(move || news(Word::Frame))?,
+            screenshots: options.screenshots.clone(),
+            camerawork: Camerawork::default(),
             posted: None,
             traced: None,
             steering: Steering::new(presets_below(&options.settings)),
@@ -135,8 +165,60 @@ impl Session {
     }
 
     /// Ends the session and says where it stood.
-    pub fn close(self) -> AppExit {
-        AppExit { camera: self.walker.camera(), settings: self.settings.clone() }
+    pub fn close(mut self) -> AppExit {
+        let (camera, settings) = (self.walker.camera(), self.settings.clone());
+        self.save_config(Instant::now());
+        if let Some(shot) = self.camerawork.give_up() {
+            self.write(shot);
+        }
+        let warnings = self.errands.finish().into_iter().filter_map(|news| match news {
+            News::Problem(text) => Some(text),
+            News::Done(_) => None,
+        });
+        AppExit { camera, settings, warnings: warnings.collect() }
+    }
+
+    /// Brings what is remembered up to date and has it written, if there is anything new.
+    fn save_config(&mut self, now: Instant) {
+        if let Some(state) = desktop::state_of(&self.window) {
+            self.keeper.keep_window(now, state);
+        }
+        self.keeper.keep_settings(&self.settings);
+        let config = &mut self.keeper.config;
+        config.ui_scale = self.ui_scale;
+        config.invert_look = self.walker.invert_look;
+        config.sensitivity = (self.walker.sensitivity != walker::SENSITIVITY).then_some(self.walker.sensitivity);
+        config.panel = self.shown.panel;
+        if let Some(errand) = self.keeper.save() {
+            self.errands.run(errand);
+        }
+    }
+
+    /// Keeps the picture on display as a file, or what it is about to become.
+    fn take_screenshot(&mut self, now: Instant) {
+        let film = self.fresh.as_ref().map(|frame| &frame.film).or_else(|| self.presenter.frame());
+        let shot = film.zip(self.traced.as_ref()).map(|(film, (job, samples))| Shot::new(film, job, *samples));
+        match shot.map(|shot| self.camerawork.ask(shot)) {
+            None => self.notices.warn(now, "no picture yet"),
+            Some(None) => self.notices.tell(now, "screenshot as soon as the picture has all its samples"),
+            Some(Some(shot)) => self.write(shot),
+        }
+    }
+
+    fn write(&self, shot: Shot) {
+        let place = Place { file: self.file.clone(), cameras: self.scene.cameras.clone() };
+        self.errands.run(screenshot::errand(shot, place, self.screenshots.clone()));
+    }
+
+    /// Tells what came of errands.
+    fn tell_news(&mut self, now: Instant) {
+        for news in self.errands.news().collect::<Vec<_>>() {
+            match news {
+                News::Done(text) => self.notices.tell(now, text),
+                News::Problem(text) => self.notices.warn(now, text),
+            }
+            self.repaint(now);
+        }
     }
 
     /// Passes an event to whom it concerns; true to close the window.
@@ -171,8 +253,10 @@ impl Session {
             }
             WindowEvent::Resized(size) => {
                 self.gpu.resize(*size);
+                self.keeper.touch(now);
                 self.repaint(now);
             }
+            WindowEvent::Moved(_) => self.keeper.touch(now),
             WindowEvent::Occluded(occluded) => self.occluded = *occluded,
             _ => {}
         }
@@ -218,12 +302,26 @@ impl Session {
             return false;
         }
         match command {
-            Some(Command::ReleasePointer) => self.capture.release(&WindowHost(&self.window)),
+            Some(Command::ReleasePointer) if self.capture.is_active() => {
+                self.capture.release(&WindowHost(&self.window))
+            }
+            Some(Command::ReleasePointer) => self.shown.help = false,
+            Some(Command::ToggleHelp) => {
+                // It is read with a free pointer.
+                self.capture.release(&WindowHost(&self.window));
+                self.shown = self.shown.with_help_toggled();
+            }
             Some(Command::TogglePanel) => self.shown = self.shown.with_panel_toggled(),
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
             Some(Command::Home) => self.walker.go_home(),
+            Some(Command::Screenshot) => self.take_screenshot(now),
+            Some(Command::ToggleFullscreen) => desktop::toggle_fullscreen(&self.window),
+            Some(Command::EnlargeUi) => self.scale_ui(self.ui_scale * UI_STEP),
+            Some(Command::ReduceUi) => self.scale_ui(self.ui_scale / UI_STEP),
+            Some(Command::ResetUi) => self.scale_ui(1.0),
             Some(Command::Quit) | None => return false,
         }
+        self.keeper.touch(now);
         self.repaint(now);
         false
     }
@@ -249,8 +347,12 @@ impl Session {
             self.survey = Some(survey);
             self.figures.demand(Instant::now(), self.rates.figures);
         }
-        let Some(frame) = self.tracer.take() else { return };
         let now = Instant::now();
+        self.tell_news(now);
+        let Some(frame) = self.tracer.take() else { return };
+        if let Some(shot) = self.camerawork.frame(&frame.film, &frame.job, frame.samples) {
+            self.write(shot);
+        }
         if frame.samples.is_none() {
             self.history.record(frame.finished, frame.stats.frame_ms);
             if let Some(fps) = self.settings.target_fps {
@@ -277,6 +379,10 @@ impl Session {
         let mut next = self.tracer.drop_outdated();
         let mut call_at = |at: Instant| next = Some(next.map_or(at, |next: Instant| next.min(at)));
         rest.into_iter().for_each(&mut call_at);
+        if self.keeper.due().is_some_and(|due| due <= now) {
+            self.save_config(now);
+        }
+        self.keeper.due().into_iter().for_each(&mut call_at);
         if self.stepped.is_some() {
             call_at(now + STEP);
         }
@@ -368,6 +474,7 @@ impl Session {
 
     fn paint_overlay(&mut self, now: Instant) {
         let resting = self.history.is_resting(now) && !self.tracer.is_busy();
+        self.notices.expire(now);
         let view = View {
             scene: &self.scene,
             settings: &self.settings,
@@ -380,12 +487,14 @@ impl Session {
             fov: self.walker.fov(),
             sensitivity: self.walker.sensitivity,
             invert_look: self.walker.invert_look,
+            ui_scale: self.ui_scale,
             tuning: Tuning {
                 bound: self.bound,
                 survey: self.survey.as_ref(),
                 drawn: self.traced.as_ref().map_or(&self.settings, |(job, _)| &job.settings),
                 is_elsewhere: self.survey.as_ref().is_some_and(|survey| survey.camera != self.walker.camera()),
             },
+            notices: self.notices.current(),
         };
         let mut changes = Vec::new();
         let shown = self.shown;
@@ -394,6 +503,7 @@ impl Session {
             changes.extend(overlay::show(ui, &view, shown));
         });
         self.figures.met(now);
+        self.notices.next_end().into_iter().for_each(|end| self.figures.demand_at(end));
         let Some(painting) = painting else { return };
         self.presenter.set_overlay(&self.gpu, &painting.job, painting.textures);
         if let Some(delay) = painting.again {
@@ -407,6 +517,7 @@ impl Session {
         }
         if !changes.is_empty() {
             changes.into_iter().for_each(|change| self.apply(change));
+            self.keeper.touch(now);
             self.repaint(now);
         }
     }
@@ -439,8 +550,17 @@ impl Session {
                     survey.end.get_or_insert(End::Stopped);
                 }
             }
+            Change::UiScale(scale) => self.scale_ui(scale),
             Change::TogglePanel => self.shown = self.shown.with_panel_toggled(),
+            Change::ToggleHelp => self.shown = self.shown.with_help_toggled(),
         }
+    }
+
+    /// Panel and text `scale` times as large as usual.
+    fn scale_ui(&mut self, scale: f32) {
+        // In steps of a twentieth, so that as many steps back lead back.
+        self.ui_scale = ((20.0 * scale).round() / 20.0).clamp(*UI_SCALES.start(), *UI_SCALES.end());
+        self.layer.set_scale(self.ui_scale);
     }
 
     /// Starts a search on what is seen from here.
@@ -479,7 +599,7 @@ impl Session {
     /// Starts showing frames in another way, or on another device.
     fn replace_presenter(&mut self, now: Instant) {
         self.presenter = Presenter::new(&self.gpu, self.settings.present);
-        self.layer = Layer::new(&self.gpu, &self.window);
+        self.layer = Layer::new(&self.gpu, &self.window, self.ui_scale);
         self.posted = None;
         self.repaint(now);
     }

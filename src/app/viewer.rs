@@ -15,7 +15,7 @@ use winit::window::WindowId;
 /// See [`run`](super::run).
 pub fn run(options: AppOptions) -> Result<AppExit, AppError> {
     let event_loop = display::event_loop()?;
-    let end = AppExit { camera: options.camera, settings: options.settings.clone() };
+    let end = AppExit { camera: options.camera, settings: options.settings.clone(), warnings: Vec::new() };
     let mut viewer = Viewer {
         options,
         proxy: event_loop.create_proxy(),

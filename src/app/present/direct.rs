@@ -11,7 +11,6 @@ use egui::TexturesDelta;
 pub struct Direct {
     /// The surface stores blue first.
     swaps: bool,
-    frame: Option<Film>,
     overlay: Raster,
     bytes: Vec<u8>,
 }
@@ -28,12 +27,7 @@ impl Direct {
     }
 
     fn with_order(swaps: bool) -> Self {
-        Self { swaps, frame: None, overlay: Raster::default(), bytes: Vec::new() }
-    }
-
-    /// Takes the frame to show and returns the one before.
-    pub fn set_frame(&mut self, film: Film) -> Option<Film> {
-        self.frame.replace(film)
+        Self { swaps, overlay: Raster::default(), bytes: Vec::new() }
     }
 
     /// Paints the overlay to show.
@@ -43,29 +37,29 @@ impl Direct {
         self.overlay.free_textures(textures);
     }
 
-    /// Joins both at the size of `target` and copies them there.
-    pub fn write(&mut self, queue: &wgpu::Queue, target: &wgpu::Texture) {
+    /// Joins `frame` and the overlay at the size of `target` and copies them there.
+    pub fn write(&mut self, frame: Option<&Film>, queue: &wgpu::Queue, target: &wgpu::Texture) {
         let (width, height) = (target.width(), target.height());
-        self.join(width, height);
+        self.join(frame, width, height);
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
         queue.write_texture(target.as_image_copy(), &self.bytes, layout, target.size());
     }
 
     /// Fills `bytes` in the surface's order; black before the first frame.
-    fn join(&mut self, width: u32, height: u32) {
+    fn join(&mut self, frame: Option<&Film>, width: u32, height: u32) {
         // The order is chosen out here, so that the loops over pixels know it.
         if self.swaps {
-            self.join_ordered(width, height, swapped);
+            self.join_ordered(frame, width, height, swapped);
         } else {
-            self.join_ordered(width, height, |rgba| rgba);
+            self.join_ordered(frame, width, height, |rgba| rgba);
         }
     }
 
-    fn join_ordered(&mut self, width: u32, height: u32, order: impl Fn(Pixel) -> Pixel) {
+    fn join_ordered(&mut self, frame: Option<&Film>, width: u32, height: u32, order: impl Fn(Pixel) -> Pixel) {
         self.bytes.resize(width as usize * height as usize * 4, 0);
         let overlay = self.overlay.used().filter(|_| self.overlay.size() == [width, height]);
         for (y, row) in (0..height).zip(self.bytes.as_chunks_mut().0.chunks_exact_mut(width as usize)) {
-            match &self.frame {
+            match frame {
                 Some(film) => copy_row(row, film, y, height, |[r, g, b, _]| order([r, g, b, 255])),
                 None => row.fill([0; 4]),
             }
@@ -118,7 +112,7 @@ mod tests {
     fn frame_and_overlay_are_joined_in_the_surfaces_order() {
         for swaps in [false, true] {
             let mut direct = Direct::with_order(swaps);
-            assert!(direct.set_frame(Film::new(6, 4, Planes::default())).is_none());
+            let film = Film::new(6, 4, Planes::default());
             let mut textures = TexturesDelta::default();
             let white = ColorImage::filled([1, 1], Color32::WHITE);
             textures.push(TextureId::default(), ImageDelta::full(white, TextureOptions::LINEAR));
@@ -128,12 +122,12 @@ mod tests {
             let primitive = ClippedPrimitive { clip_rect: Rect::EVERYTHING, primitive: Primitive::Mesh(mesh) };
             let job = PaintJob { primitives: vec![primitive], size: [6, 4], pixels_per_point: 1.0 };
             direct.set_overlay(&job, &mut textures);
-            direct.join(6, 4);
+            direct.join(Some(&film), 6, 4);
             let pixel = |x: usize, y: usize| &direct.bytes[4 * (6 * y + x)..][..4];
             assert_eq!(pixel(2, 2), if swaps { [10, 20, 200, 255] } else { [200, 20, 10, 255] });
             assert_eq!(pixel(0, 0), [0, 0, 0, 255], "a new film is black");
             assert_eq!(pixel(3, 2), [0, 0, 0, 255]);
-            direct.join(12, 8);
+            direct.join(Some(&film), 12, 8);
             assert_eq!(direct.bytes.len(), 12 * 8 * 4);
             assert_eq!(&direct.bytes[4 * (12 * 2 + 2)..][..4], [0, 0, 0, 255], "an overlay of the old size waits");
         }
