@@ -167,7 +167,7 @@ impl Session {
     /// Ends the session and says where it stood.
     pub fn close(mut self) -> AppExit {
         let (camera, settings) = (self.walker.camera(), self.settings.clone());
-        self.save_config(Instant::now());
+        self.save_config();
         if let Some(shot) = self.camerawork.give_up() {
             self.write(shot);
         }
@@ -179,9 +179,9 @@ impl Session {
     }
 
     /// Brings what is remembered up to date and has it written, if there is anything new.
-    fn save_config(&mut self, now: Instant) {
+    fn save_config(&mut self) {
         if let Some(state) = desktop::state_of(&self.window) {
-            self.keeper.keep_window(now, state);
+            self.keeper.keep_window(state);
         }
         self.keeper.keep_settings(&self.settings);
         let config = &mut self.keeper.config;
@@ -256,7 +256,7 @@ impl Session {
                 self.keeper.touch(now);
                 self.repaint(now);
             }
-            WindowEvent::Moved(_) => self.keeper.touch(now),
+            WindowEvent::Moved(position) => self.keeper.window_moved(now, (position.x, position.y)),
             WindowEvent::Occluded(occluded) => self.occluded = *occluded,
             _ => {}
         }
@@ -380,7 +380,7 @@ impl Session {
         let mut call_at = |at: Instant| next = Some(next.map_or(at, |next: Instant| next.min(at)));
         rest.into_iter().for_each(&mut call_at);
         if self.keeper.due().is_some_and(|due| due <= now) {
-            self.save_config(now);
+            self.save_config();
         }
         self.keeper.due().into_iter().for_each(&mut call_at);
         if self.stepped.is_some() {

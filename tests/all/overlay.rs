@@ -4,7 +4,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use raywalk::app::history::History;
 use raywalk::app::input::HELP;
-use raywalk::app::overlay::{self, Change, Showing, Shown, Tuning, View, theme};
+use raywalk::app::overlay::{self, Change, Notices, Showing, Shown, Tuning, View, theme};
 use raywalk::app::survey::{End, Point, Survey};
 use raywalk::geometry::Geometry;
 use raywalk::math::simd;
@@ -45,6 +45,7 @@ struct Panel {
     showing: Showing,
     bound: Bound,
     survey: Option<Survey>,
+    notices: Notices,
     changes: Vec<Change>,
 }
 
@@ -54,8 +55,8 @@ impl Panel {
         let shown = Shown::default();
         let (history, showing) = (History::default(), Showing::AsSet);
         let bound = Bound::parse("flip=0.01").expect("right");
-        let stats = FrameStats::default();
-        Self { scene: scene(), settings, history, stats, shown, showing, bound, survey: None, changes: Vec::new() }
+        let (stats, notices, changes) = (FrameStats::default(), Notices::default(), Vec::new());
+        Self { scene: scene(), settings, history, stats, shown, showing, bound, survey: None, notices, changes }
     }
 
     fn show(&mut self, ui: &mut egui::Ui) {
@@ -72,13 +73,13 @@ impl Panel {
             sensitivity: 0.12,
             invert_look: false,
             ui_scale: 1.0,
-            notices: &[],
             tuning: Tuning {
                 bound: self.bound,
                 survey: self.survey.as_ref(),
                 drawn: &self.settings,
                 is_elsewhere: false,
             },
+            notices: self.notices.current(),
         };
         let changes = overlay::show(ui, &view, self.shown);
         for change in &changes {
@@ -306,6 +307,19 @@ fn the_status_line_says_rate_time_and_size() {
     harness.state_mut().shown.overlay = false;
     harness.run();
     assert!(harness.query_by_label_contains("1280x720").is_none(), "everything is hidden");
+}
+
+#[test]
+fn notices_are_read_even_when_all_else_is_hidden() {
+    let mut panel = Panel::new();
+    panel.shown.overlay = false;
+    panel.notices.tell(Instant::now(), "camera copied");
+    panel.notices.warn(Instant::now(), "what was pasted is no camera: ".repeat(12));
+    let harness = panel.harness();
+    harness.get_by_label("camera copied");
+    let long = harness.get_by_label_contains("what was pasted").rect();
+    assert!(long.width() < 700.0 && long.height() > 30.0, "it breaks into lines: {long:?}");
+    assert!(long.bottom() < 1400.0);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// From a change to the file: a slider that is dragged is one change.
 const DELAY: Duration = Duration::from_secs(3);
 /// A window is put in its place by the desktop within this time of its opening.
-const SETTLING: Duration = Duration::from_secs(1);
+const SETTLING: Duration = Duration::from_millis(1500);
 
 /// The configuration while the window is open.
 #[derive(Debug)]
@@ -64,12 +64,18 @@ impl Keeper {
         self.config.keep_settings(&self.settings, current);
     }
 
-    /// Takes over where the window is, once that is not where it opened.
-    pub fn keep_window(&mut self, now: Instant, current: WindowState) {
-        let opened = self.window.get_or_insert(current);
-        if now.saturating_duration_since(self.opened) < SETTLING {
-            opened.position = current.position;
+    /// The window is at `position` now: where the desktop put it, or a moment later where the user did.
+    pub fn window_moved(&mut self, now: Instant, position: (i32, i32)) {
+        match &mut self.window {
+            Some(opened) if now.saturating_duration_since(self.opened) < SETTLING => opened.position = Some(position),
+            _ => self.touch(now),
         }
+    }
+
+    /// Takes over where the window is, once that is not where it opened.
+    pub fn keep_window(&mut self, current: WindowState) {
+        let opened = self.window.get_or_insert(current);
+        opened.position = opened.position.or(current.position);
         if *opened == current {
             return;
         }
@@ -80,7 +86,7 @@ impl Keeper {
         self.config.window = Some(WindowState { position, size, ..current });
     }
 
-    /// The window opens with this size.
+    /// The window opens like this.
     pub fn open_window(&mut self, state: WindowState) {
         self.window = Some(state);
         self.opened = Instant::now();
@@ -150,14 +156,16 @@ mod tests {
         let first = WindowState { position: None, ..at((0, 0), (1280, 720)) };
         keeper.open_window(first);
         let (soon, later) = (keeper.opened, keeper.opened + 2 * SETTLING);
-        keeper.keep_window(soon, at((30, 40), (1280, 720)));
-        assert_eq!(keeper.config.window, None, "the desktop put it there");
-        keeper.keep_window(later, at((30, 40), (1280, 720)));
+        keeper.window_moved(soon, (30, 40));
+        assert_eq!(keeper.due(), None, "the desktop put it there");
+        keeper.keep_window(at((30, 40), (1280, 720)));
         assert_eq!(keeper.config.window, None);
-        keeper.keep_window(later, at((30, 40), (900, 500)));
-        assert_eq!(keeper.config.window, Some(at((30, 40), (900, 500))));
-        keeper.keep_window(later, WindowState { fullscreen: true, ..at((0, 0), (1920, 1080)) });
-        let whole = WindowState { fullscreen: true, ..at((30, 40), (900, 500)) };
+        keeper.window_moved(later, (31, 40));
+        assert!(keeper.due().is_some(), "the user did");
+        keeper.keep_window(at((31, 40), (900, 500)));
+        assert_eq!(keeper.config.window, Some(at((31, 40), (900, 500))));
+        keeper.keep_window(WindowState { fullscreen: true, ..at((0, 0), (1920, 1080)) });
+        let whole = WindowState { fullscreen: true, ..at((31, 40), (900, 500)) };
         assert_eq!(keeper.config.window, Some(whole));
     }
 }

@@ -83,7 +83,11 @@ pub fn show(ui: &Ui, changes: &mut Vec<Change>) {
             ui.set_width(WIDTH.min(room.x - 48.0).max(1.0));
             // Without the height of the title and the frame.
             let height = (SHARE * room.y - 56.0).max(1.0);
-            ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, contents);
+            ScrollArea::vertical()
+                .max_height(height)
+                .min_scrolled_height(height)
+                .auto_shrink([false, true])
+                .show(ui, contents);
         });
     if !open {
         changes.push(Change::ToggleHelp);
