@@ -3,8 +3,9 @@
 use crate::settings::Promise;
 use egui::{Color32, CornerRadius, Stroke};
 
-/// Behind everything. Nearly opaque, so that text stays legible over a bright scene.
-pub const BACKGROUND: Color32 = Color32::from_rgba_premultiplied(15, 17, 22, 232);
+/// Behind everything. Opaque, so that text is legible over any scene, and because what shines through would have to be
+/// mixed anew for every pixel of every frame.
+pub const BACKGROUND: Color32 = Color32::from_rgb(16, 18, 24);
 /// Figures and whatever deserves a look.
 pub const STRONG: Color32 = Color32::from_rgb(236, 240, 247);
 /// Names of figures and controls.
@@ -43,7 +44,7 @@ pub fn apply(context: &egui::Context) {
         let visuals = &mut style.visuals;
         visuals.window_shadow = egui::Shadow::NONE;
         visuals.popup_shadow = egui::Shadow::NONE;
-        visuals.window_fill = BACKGROUND.to_opaque();
+        visuals.window_fill = BACKGROUND;
         visuals.panel_fill = BACKGROUND;
         visuals.window_stroke = Stroke::new(1.0, LINE);
         visuals.window_corner_radius = CornerRadius::same(4);

@@ -4,7 +4,7 @@ use super::PaintJob;
 use super::raster::{Raster, over};
 use crate::app::gpu::Gpu;
 use crate::render::Film;
-use egui::TexturesDelta;
+use egui::{Color32, TexturesDelta};
 
 /// The picture on its way to the surface.
 #[derive(Debug)]
@@ -66,9 +66,7 @@ impl Direct {
             let Some([left, top, covered, rows]) = overlay else { continue };
             if (top..top + rows).contains(&y) {
                 let covered = left as usize..(left + covered) as usize;
-                for (pixel, color) in row[covered.clone()].iter_mut().zip(&self.overlay.row(y)[covered]) {
-                    *pixel = over(order(color.to_array()), *pixel);
-                }
+                lay_row(&mut row[covered.clone()], &self.overlay.row(y)[covered], &order);
             }
         }
     }
@@ -76,6 +74,24 @@ impl Direct {
 
 /// One pixel, four channels with alpha last.
 type Pixel = [u8; 4];
+
+/// Pixels that are looked at together: most of a panel hides all of what is below.
+const RUN: usize = 16;
+
+/// A row of the overlay over one of the picture.
+fn lay_row(row: &mut [Pixel], overlay: &[Color32], order: impl Fn(Pixel) -> Pixel) {
+    for (pixels, colors) in row.chunks_mut(RUN).zip(overlay.chunks(RUN)) {
+        let pairs = pixels.iter_mut().zip(colors.iter().map(|color| color.to_array()));
+        let (all, any) = colors
+            .iter()
+            .fold((u8::MAX, false), |(all, any), color| (all & color.a(), any | (*color != Color32::TRANSPARENT)));
+        match (all, any) {
+            (u8::MAX, _) => pairs.for_each(|(pixel, color)| *pixel = order(color)),
+            (_, false) => {}
+            _ => pairs.for_each(|(pixel, color)| *pixel = over(order(color), *pixel)),
+        }
+    }
+}
 
 /// One row of the picture; a film of another size is stretched, each pixel from the nearest one.
 fn copy_row(row: &mut [Pixel], film: &Film, y: u32, height: u32, order: impl Fn(Pixel) -> Pixel) {
@@ -106,7 +122,7 @@ mod tests {
     use super::*;
     use crate::render::Planes;
     use egui::epaint::{ClippedPrimitive, ImageDelta, Mesh, Primitive, TextureId, textures::TextureOptions};
-    use egui::{Color32, ColorImage, Rect, pos2, vec2};
+    use egui::{ColorImage, Rect, pos2, vec2};
 
     #[test]
     fn frame_and_overlay_are_joined_in_the_surfaces_order() {
