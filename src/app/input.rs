@@ -33,6 +33,8 @@ pub enum Command {
     Quit,
     /// Let the pointer go, or else give up what is being loaded.
     ReleasePointer,
+    /// Open or close the help.
+    ToggleHelp,
     /// Open or close the panel.
     TogglePanel,
     /// Show or hide everything that lies over the picture.
@@ -47,6 +49,16 @@ pub enum Command {
     Inspect,
     /// Walk instead of flying, or the reverse.
     ToggleWalking,
+    /// Keep the picture as a file.
+    Screenshot,
+    /// Fill the screen, or return to a window.
+    ToggleFullscreen,
+    /// A larger panel and text.
+    EnlargeUi,
+    /// A smaller panel and text.
+    ReduceUi,
+    /// Panel and text of the usual size.
+    ResetUi,
 }
 
 /// Keys that act while held. Codes name positions, so that WASD is the same block of keys on every layout.
@@ -67,7 +79,7 @@ pub const HOLD_KEYS: &[(KeyCode, Hold)] = &[
 pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::KeyQ, true, Command::Quit),
     (KeyCode::Escape, false, Command::ReleasePointer),
-    (KeyCode::F1, false, Command::TogglePanel),
+    (KeyCode::F1, false, Command::ToggleHelp),
     (KeyCode::Tab, false, Command::TogglePanel),
     (KeyCode::KeyH, false, Command::ToggleOverlay),
     (KeyCode::Home, false, Command::Home),
@@ -75,6 +87,14 @@ pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::F5, false, Command::Reload),
     (KeyCode::KeyI, false, Command::Inspect),
     (KeyCode::KeyG, false, Command::ToggleWalking),
+    (KeyCode::F12, false, Command::Screenshot),
+    (KeyCode::F11, false, Command::ToggleFullscreen),
+    (KeyCode::Equal, true, Command::EnlargeUi),
+    (KeyCode::NumpadAdd, true, Command::EnlargeUi),
+    (KeyCode::Minus, true, Command::ReduceUi),
+    (KeyCode::NumpadSubtract, true, Command::ReduceUi),
+    (KeyCode::Digit0, true, Command::ResetUi),
+    (KeyCode::Numpad0, true, Command::ResetUi),
 ];
 
 /// The help shown in the overlay: keys and what they do.
@@ -84,14 +104,18 @@ pub const HELP: &[(&str, &str)] = &[
     ("Shift, Alt", "faster, slower"),
     ("Wheel", "change the speed"),
     ("Click", "look with the mouse"),
-    ("Esc", "let the mouse go; stop loading"),
+    ("Esc", "let the mouse go; close the help; stop loading"),
     ("G", "walk or fly"),
     ("Home", "back to the start"),
-    ("F1, Tab", "this panel"),
+    ("F1", "help"),
+    ("Tab", "this panel"),
     ("H", "hide everything"),
     ("I, right click", "tell of the thing under the pointer"),
     ("Ctrl+O", "open a scene; or drop one on the window"),
     ("F5", "load the scene again"),
+    ("F11", "full screen"),
+    ("F12", "screenshot"),
+    ("Ctrl and +, -, 0", "panel larger, smaller, as usual"),
     ("Ctrl+Q", "quit"),
 ];
 
@@ -218,8 +242,8 @@ mod tests {
     #[test]
     fn commands_come_once_and_need_their_chord() {
         let mut keys = Keys::default();
-        assert_eq!(keys.press(code(KeyCode::F1), false), Some(Command::TogglePanel));
-        assert_eq!(keys.press(code(KeyCode::F1), true), None);
+        assert_eq!(keys.press(code(KeyCode::Tab), false), Some(Command::TogglePanel));
+        assert_eq!(keys.press(code(KeyCode::Tab), true), None);
         assert_eq!(keys.press(code(KeyCode::KeyQ), false), None);
         keys.set_ctrl(true);
         assert_eq!(keys.press(code(KeyCode::KeyQ), false), Some(Command::Quit));

@@ -2,6 +2,9 @@
 
 use super::at_rest::REST;
 use super::capture::{Capture, PointerHost};
+use super::config::{Keeper, UI_SCALES, WindowState};
+use super::desktop;
+use super::errands::{self, Errands};
 use super::error::AppError;
 use super::gpu::{Gpu, Target};
 use super::history::History;
@@ -14,18 +17,21 @@ use super::overlay::{self, Change, Notices, Showing, Shown, Tuning, View};
 use super::pacing::{Limiter, Rates};
 use super::present::Presenter;
 use super::scenes::{Arrival, News, Scenes, Wish};
+use super::screenshot::{self, Camerawork, Place, Shot};
 use super::steering::Steering;
 use super::survey::{self, End, Survey};
 use super::tracer::{Job, TracedFrame, Tracer};
 use super::viewer::Call;
-use super::walker::Walker;
+use super::walker::{self, Walker};
 use super::{AppExit, AppOptions, Opening};
 use crate::measure::metric::{METRICS, metric};
 use crate::measure::tune::{Bound, Task};
+use crate::picture::NumberedName;
 use crate::render::FrameStats;
 use crate::scene::{self, Camera, Scene};
 use crate::settings::Settings;
 use glam::DVec2;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use winit::dpi::{PhysicalPosition, PhysicalSize};
@@ -47,6 +53,8 @@ const SEARCH_BUDGET: Duration = Duration::from_secs(30);
 const TELL: Duration = Duration::from_millis(100);
 /// What is told where a walker does not fit.
 const NO_ROOM: &str = "There is no room to walk here: flying on";
+/// A step of the size of panel and text.
+const UI_STEP: f32 = 1.1;
 /// Pixels of smooth scrolling that count as one notch of a wheel.
 const PIXELS_PER_NOTCH: f64 = 40.0;
 
@@ -74,6 +82,13 @@ pub struct Session {
     stats: FrameStats,
     shown: Shown,
     notices: Notices,
+    keeper: Keeper,
+    /// The window opened as the last one was: no scene resizes it.
+    is_placed: bool,
+    ui_scale: f32,
+    errands: Errands,
+    screenshots: NumberedName,
+    camerawork: Camerawork,
     posted: Option<Job>,
     /// What the last frame shows, and with how many samples a pixel if it was refined.
     traced: Option<(Job, Option<u32>)>,
@@ -104,7 +119,7 @@ impl Session {
     ) -> Result<Self, AppError> {
         let wake = Arc::clone(&call);
         let mut scenes =
-            Scenes::new(options.load.clone(), options.recent.clone(), Arc::new(move || wake(Call::Scenes)));
+            Scenes::new(options.load.clone(), options.config.recent.clone(), Arc::new(move || wake(Call::Scenes)));
         let (scene, camera) = match &options.opening {
             Opening::Scene(arrival) => {
                 scenes.show(arrival);
@@ -117,9 +132,10 @@ impl Session {
                 (Arc::new(nothing), camera)
             }
         };
-        let attributes = Window::default_attributes()
-            .with_title(title(&scene))
-            .with_inner_size(PhysicalSize::new(options.size.0, options.size.1));
+        let attributes = Window::default_attributes().with_title(title(&scene));
+        let size = WindowState { size: options.size, ..WindowState::default() };
+        let place = options.config.window.filter(|_| options.as_before).unwrap_or(size);
+        let attributes = desktop::placed(attributes, place, event_loop);
         let window = event_loop.create_window(attributes).map_err(|error| AppError::NoDisplay(error.to_string()))?;
         let window = Arc::new(window);
         let display = event_loop.owned_display_handle();
@@ -127,15 +143,23 @@ impl Session {
         let millihertz = window.current_monitor().and_then(|monitor| monitor.refresh_rate_millihertz());
         let rates = Rates::new(millihertz, gpu.is_software);
         let now = Instant::now();
+        let mut keeper = Keeper::new(options.store.clone(), options.config.clone(), &options.settings);
+        keeper.open_window(place);
+        let is_placed = options.as_before && options.config.window.is_some();
+        let config = &keeper.config;
+        let mut walker = Walker::in_scene(&scene, camera);
+        walker.invert_look = config.invert_look;
+        walker.sensitivity = config.sensitivity.unwrap_or(walker.sensitivity);
+        let news = Arc::clone(&call);
         let mut session = Self {
             tracer: Tracer::start(rates.display, move |word| call(Call::Traced(word)))?,
-            layer: Layer::new(&gpu, &window),
+            layer: Layer::new(&gpu, &window, config.ui_scale),
             presenter: Presenter::new(&gpu, options.settings.present),
             gpu,
             window,
             display,
             settings: options.settings.clone(),
-            walker: Walker::in_scene(&scene, camera),
+            walker,
             scenes,
             lighting: Lighting::of(&scene),
             lit: Arc::clone(&scene),
@@ -146,8 +170,14 @@ impl Session {
             pointer: DVec2::ZERO,
             history: History::default(),
             stats: FrameStats::default(),
-            shown: Shown::default(),
+            shown: Shown { panel: config.panel, ..Shown::default() },
             notices: Notices::default(),
+            ui_scale: config.ui_scale,
+            keeper,
+            is_placed,
+            errands: Errands::start(move || news(Call::Errand))?,
+            screenshots: options.screenshots.clone(),
+            camerawork: Camerawork::default(),
             posted: None,
             traced: None,
             steering: Steering::new(presets_below(&options.settings)),
@@ -168,8 +198,61 @@ impl Session {
     }
 
     /// Ends the session and says where it stood.
-    pub fn close(self) -> AppExit {
-        AppExit { camera: self.walker.camera(), settings: self.settings.clone(), recent: self.scenes.recent().clone() }
+    pub fn close(mut self) -> AppExit {
+        let (camera, settings) = (self.walker.camera(), self.settings.clone());
+        self.save_config();
+        if let Some(shot) = self.camerawork.give_up() {
+            self.write(shot);
+        }
+        let warnings = self.errands.finish().into_iter().filter_map(|news| match news {
+            errands::News::Problem(text) => Some(text),
+            errands::News::Done(_) => None,
+        });
+        AppExit { camera, settings, warnings: warnings.collect() }
+    }
+
+    /// Brings what is remembered up to date and has it written, if there is anything new.
+    fn save_config(&mut self) {
+        if let Some(state) = desktop::state_of(&self.window) {
+            self.keeper.keep_window(state);
+        }
+        self.keeper.keep_settings(&self.settings);
+        let config = &mut self.keeper.config;
+        config.ui_scale = self.ui_scale;
+        config.invert_look = self.walker.invert_look;
+        config.sensitivity = (self.walker.sensitivity != walker::SENSITIVITY).then_some(self.walker.sensitivity);
+        config.panel = self.shown.panel;
+        config.recent.clone_from(self.scenes.recent());
+        if let Some(errand) = self.keeper.save() {
+            self.errands.run(errand);
+        }
+    }
+
+    /// Keeps the picture on display as a file, or what it is about to become.
+    fn take_screenshot(&mut self, now: Instant) {
+        let film = self.fresh.as_ref().map(|frame| &frame.film).or_else(|| self.presenter.frame());
+        let shot = film.zip(self.traced.as_ref()).map(|(film, (job, samples))| Shot::new(film, job, *samples));
+        match shot.map(|shot| self.camerawork.ask(shot)) {
+            None => self.notices.warn(now, "no picture yet"),
+            Some(None) => self.notices.tell(now, "screenshot as soon as the picture has all its samples"),
+            Some(Some(shot)) => self.write(shot),
+        }
+    }
+
+    fn write(&self, shot: Shot) {
+        let place = Place { file: self.scenes.file().map(Path::to_owned), cameras: self.scene.cameras.clone() };
+        self.errands.run(screenshot::errand(shot, place, self.screenshots.clone()));
+    }
+
+    /// Tells what came of errands.
+    pub fn tell_news(&mut self, now: Instant) {
+        for news in self.errands.news().collect::<Vec<_>>() {
+            match news {
+                errands::News::Done(text) => self.notices.tell(now, text),
+                errands::News::Problem(text) => self.notices.warn(now, text),
+            }
+            self.repaint(now);
+        }
     }
 
     /// Passes an event to whom it concerns; true to close the window.
@@ -211,8 +294,10 @@ impl Session {
             }
             WindowEvent::Resized(size) => {
                 self.gpu.resize(*size);
+                self.keeper.touch(now);
                 self.repaint(now);
             }
+            WindowEvent::Moved(position) => self.keeper.window_moved(now, (position.x, position.y)),
             WindowEvent::Occluded(occluded) => self.occluded = *occluded,
             WindowEvent::DroppedFile(path) => self.scenes.drop_in(path.clone()),
             WindowEvent::HoveredFile(_) | WindowEvent::HoveredFileCancelled => {
@@ -266,7 +351,13 @@ impl Session {
             Some(Command::ReleasePointer) if self.capture.is_active() => {
                 self.capture.release(&WindowHost(&self.window));
             }
+            Some(Command::ReleasePointer) if self.shown.help => self.shown.help = false,
             Some(Command::ReleasePointer) => self.wish(Wish::Cancel),
+            Some(Command::ToggleHelp) => {
+                // It is read with a free pointer.
+                self.capture.release(&WindowHost(&self.window));
+                self.shown = self.shown.with_help_toggled();
+            }
             Some(Command::Open) => self.wish(Wish::Open),
             Some(Command::Reload) => self.wish(Wish::Reload),
             Some(Command::Inspect) => self.inspect(),
@@ -274,8 +365,14 @@ impl Session {
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
             Some(Command::Home) => self.walker.go_home(),
             Some(Command::ToggleWalking) => self.toggle_walking(now),
+            Some(Command::Screenshot) => self.take_screenshot(now),
+            Some(Command::ToggleFullscreen) => desktop::toggle_fullscreen(&self.window),
+            Some(Command::EnlargeUi) => self.scale_ui(self.ui_scale * UI_STEP),
+            Some(Command::ReduceUi) => self.scale_ui(self.ui_scale / UI_STEP),
+            Some(Command::ResetUi) => self.scale_ui(1.0),
             Some(Command::Quit) | None => return false,
         }
+        self.keeper.touch(now);
         self.repaint(now);
         false
     }
@@ -313,8 +410,11 @@ impl Session {
             self.survey = Some(survey);
             self.figures.demand(Instant::now(), self.rates.figures);
         }
-        let Some(frame) = self.tracer.take() else { return };
         let now = Instant::now();
+        let Some(frame) = self.tracer.take() else { return };
+        if let Some(shot) = self.camerawork.frame(&frame.film, &frame.job, frame.samples) {
+            self.write(shot);
+        }
         if frame.samples.is_none() {
             self.history.record(frame.finished, frame.stats.frame_ms);
             if let Some(fps) = self.settings.target_fps {
@@ -354,7 +454,7 @@ impl Session {
     fn enter(&mut self, Arrival { scene, camera, size, .. }: Arrival) {
         self.walker.enter(&scene, camera);
         self.lighting = Lighting::of(&scene);
-        if let Some((width, height)) = size {
+        if let Some((width, height)) = size.filter(|_| !self.is_placed) {
             // The window stays as it is where the system does not let it be resized.
             let _ = self.window.request_inner_size(PhysicalSize::new(width, height));
         }
@@ -405,6 +505,10 @@ impl Session {
         let mut next = self.tracer.drop_outdated();
         let mut call_at = |at: Instant| next = Some(next.map_or(at, |next: Instant| next.min(at)));
         rest.into_iter().for_each(&mut call_at);
+        if self.keeper.due().is_some_and(|due| due <= now) {
+            self.save_config();
+        }
+        self.keeper.due().into_iter().for_each(&mut call_at);
         if self.stepped.is_some() {
             call_at(now + STEP);
         }
@@ -514,6 +618,7 @@ impl Session {
             fov: self.walker.fov(),
             sensitivity: self.walker.sensitivity,
             invert_look: self.walker.invert_look,
+            ui_scale: self.ui_scale,
             tuning: Tuning {
                 bound: self.bound,
                 survey: self.survey.as_ref(),
@@ -551,6 +656,7 @@ impl Session {
         }
         if !changes.is_empty() {
             changes.into_iter().for_each(|change| self.apply(change));
+            self.keeper.touch(now);
             self.repaint(now);
         }
     }
@@ -589,6 +695,7 @@ impl Session {
                     survey.end.get_or_insert(End::Stopped);
                 }
             }
+            Change::UiScale(scale) => self.scale_ui(scale),
             Change::TogglePanel => self.shown = self.shown.with_panel_toggled(),
             Change::Scenes(wish) => self.wish(wish),
             Change::Light(light, dial) => {
@@ -600,7 +707,15 @@ impl Session {
                 self.lit = self.lighting.lit(&self.scene);
             }
             Change::CloseInspection => self.inspection = None,
+            Change::ToggleHelp => self.shown = self.shown.with_help_toggled(),
         }
+    }
+
+    /// Panel and text `scale` times as large as usual.
+    fn scale_ui(&mut self, scale: f32) {
+        // In steps of a twentieth, so that as many steps back lead back.
+        self.ui_scale = ((20.0 * scale).round() / 20.0).clamp(*UI_SCALES.start(), *UI_SCALES.end());
+        self.layer.set_scale(self.ui_scale);
     }
 
     /// Starts a search on what is seen from here.
@@ -639,7 +754,7 @@ impl Session {
     /// Starts showing frames in another way, or on another device.
     fn replace_presenter(&mut self, now: Instant) {
         self.presenter = Presenter::new(&self.gpu, self.settings.present);
-        self.layer = Layer::new(&self.gpu, &self.window);
+        self.layer = Layer::new(&self.gpu, &self.window, self.ui_scale);
         self.posted = None;
         self.repaint(now);
     }

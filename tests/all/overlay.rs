@@ -3,6 +3,7 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use raywalk::app::history::History;
+use raywalk::app::input::HELP;
 use raywalk::app::inspection::Inspection;
 use raywalk::app::lighting::Dial;
 use raywalk::app::overlay::{self, Change, Notices, Showing, Shown, Tuning, View, theme};
@@ -44,6 +45,7 @@ struct Panel {
     scene: Scene,
     settings: Settings,
     history: History,
+    stats: FrameStats,
     shown: Shown,
     showing: Showing,
     bound: Bound,
@@ -65,6 +67,7 @@ impl Panel {
             scene: scene(),
             settings,
             history,
+            stats: FrameStats::default(),
             shown,
             showing,
             bound,
@@ -81,7 +84,7 @@ impl Panel {
         let view = View {
             scene: &self.scene,
             settings: &self.settings,
-            stats: &FrameStats::default(),
+            stats: &self.stats,
             history: &self.history,
             resting: false,
             size: (1280, 720),
@@ -92,6 +95,7 @@ impl Panel {
             fov: 60.0,
             sensitivity: 0.12,
             invert_look: false,
+            ui_scale: 1.0,
             tuning: Tuning {
                 bound: self.bound,
                 survey: self.survey.as_ref(),
@@ -146,6 +150,99 @@ fn every_setting_has_a_control_that_shows_its_promise() {
     let promises = ["same pixels", "approximate", "different picture"];
     let shown: usize = promises.iter().map(|promise| harness.query_all_by_label(promise).count()).sum();
     assert_eq!(shown, ROWS.len());
+}
+
+#[test]
+fn every_setting_tells_its_help_where_it_is_pointed_at() {
+    for row in ROWS {
+        let mut harness = Panel::new().harness();
+        let control = harness.get_all_by_label(row.name).next_back().expect("a control");
+        control.hover();
+        harness.run_steps(30);
+        harness.get_by_label(row.help);
+    }
+}
+
+#[test]
+fn the_help_names_every_key_setting_value_and_preset() {
+    let mut panel = Panel::new();
+    (panel.shown.panel, panel.shown.help) = (false, true);
+    let mut harness = panel.harness();
+    for (keys, what) in HELP {
+        assert!(harness.query_all_by_label(keys).count() > 0 && harness.query_all_by_label(what).count() > 0, "{keys}");
+    }
+    for row in ROWS {
+        harness.get_by_label(row.help);
+        assert!(harness.query_all_by_label(row.name).count() > 0, "{}", row.name);
+        if let Kind::Choice(choices) = &row.kind {
+            for group in choices.chunk_by(|a, b| a.promise == b.promise) {
+                let values: Vec<&str> = group.iter().map(|choice| choice.value).collect();
+                assert!(harness.query_all_by_label(&values.join(", ")).count() > 0, "{} {values:?}", row.name);
+            }
+        }
+    }
+    for preset in PRESETS {
+        harness.get_by_label(preset.help);
+    }
+    for word in ["Certified visibility", "Subsampling", "Caches", "1 % low"] {
+        harness.get_by_label(word);
+    }
+    harness.get_by_label("Close window").click();
+    harness.run();
+    assert_eq!(harness.state().changes, [Change::ToggleHelp]);
+}
+
+#[test]
+fn the_help_fits_in_small_windows() {
+    for size in [egui::vec2(300.0, 200.0), egui::vec2(60.0, 60.0), egui::vec2(1280.0, 720.0)] {
+        let mut panel = Panel::new();
+        panel.shown.help = true;
+        let mut harness = Harness::builder()
+            .with_size(size)
+            .with_context_setup(theme::apply)
+            .build_ui_state(|ui, panel: &mut Panel| panel.show(ui), panel);
+        harness.run();
+        let rect = harness.get_by_label("Help").rect();
+        assert!(rect.top() >= 0.0 && rect.left() >= 0.0, "{rect:?} in {size}");
+    }
+}
+
+#[test]
+fn panel_and_text_can_be_made_larger() {
+    let mut harness = Panel::new().harness();
+    let slider = harness.get_all_by_label("panel size").next_back().expect("a slider");
+    slider.set_value_accesskit(1.5);
+    harness.run();
+    assert_eq!(harness.state().changes, [Change::UiScale(1.5)]);
+}
+
+#[test]
+fn the_slowest_frames_are_told_of() {
+    let mut panel = Panel::new();
+    let start = Instant::now();
+    for i in 0..1000 {
+        panel.history.record(start + Duration::from_millis(8) * i, if i == 500 { 200.0 } else { 8.0 });
+    }
+    let harness = panel.harness();
+    harness.get_by_label("median 8.0   p95 8.0   p99 8.0   max 200.0 ms");
+    harness.get_by_label("1 % low 36.8 fps");
+}
+
+#[test]
+fn stages_and_rays_are_bars_that_tell_their_parts() {
+    let mut panel = Panel::new();
+    panel.stats.stages_ms.visibility = 3.0;
+    panel.stats.stages_ms.shadow = 1.0;
+    panel.stats.rays.primary = 1000;
+    panel.stats.rays.shadow = 3000;
+    let mut harness = panel.harness();
+    for (bar, told) in
+        [("CPU time", "visibility: 3.00 ms, 75 % of the CPU time"), ("rays", "shadow: 3 000, 75 % of the rays")]
+    {
+        harness.get_by_role_and_label(egui::accesskit::Role::Image, bar).hover();
+        harness.run_steps(30);
+        harness.get_by_label(told);
+    }
 }
 
 #[test]

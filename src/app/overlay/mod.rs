@@ -3,9 +3,11 @@
 //! Architecture invariant: nothing here knows of a window, a device or a thread, so all of it is tested
 //! without any of them.
 
+mod bars;
 mod controls;
 mod figures;
 mod graph;
+mod help;
 mod inspection;
 mod lights;
 pub mod notice;
@@ -18,7 +20,6 @@ pub use tuning::{Tuning, usual_bound};
 
 use super::at_rest::SAMPLES;
 use super::history::History;
-use super::input::HELP;
 use super::inspection::Inspection;
 use super::lighting::Dial;
 use super::scenes::{Report, Wish};
@@ -62,6 +63,8 @@ pub struct View<'a> {
     pub sensitivity: f64,
     /// Mouse forward looks down.
     pub invert_look: bool,
+    /// How many times as large as usual panel and text are.
+    pub ui_scale: f32,
     /// What is known of other settings.
     pub tuning: Tuning<'a>,
     /// What there is to say of scenes.
@@ -121,18 +124,25 @@ pub struct Shown {
     pub overlay: bool,
     /// The panel below the status line.
     pub panel: bool,
+    /// The help window.
+    pub help: bool,
 }
 
 impl Default for Shown {
     fn default() -> Self {
-        Self { overlay: true, panel: true }
+        Self { overlay: true, panel: true, help: false }
     }
 }
 
 impl Shown {
     /// With the panel where it was not seen, and without it where it was.
     pub fn with_panel_toggled(self) -> Self {
-        Self { overlay: true, panel: !(self.overlay && self.panel) }
+        Self { overlay: true, panel: !(self.overlay && self.panel), ..self }
+    }
+
+    /// With the help where it was not seen, and without it where it was.
+    pub fn with_help_toggled(self) -> Self {
+        Self { overlay: true, help: !(self.overlay && self.help), ..self }
     }
 }
 
@@ -163,6 +173,8 @@ pub enum Change {
     Search(Bound),
     /// End the search.
     StopSearch,
+    /// Panel and text this many times as large as usual.
+    UiScale(f32),
     /// Open or close the panel.
     TogglePanel,
     /// Something about scenes.
@@ -173,6 +185,8 @@ pub enum Change {
     ResetLights,
     /// Tell no longer of what was pointed at.
     CloseInspection,
+    /// Open or close the help.
+    ToggleHelp,
 }
 
 /// Draws the overlay and returns what was asked for, in order.
@@ -206,6 +220,9 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
                 }
             });
         });
+    if shown.help {
+        help::show(ui, &mut changes);
+    }
     changes
 }
 
@@ -227,8 +244,11 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
         ui.label(RichText::new(line).size(15.0).strong().color(theme::STRONG));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let name = if shown.panel { "Hide panel" } else { "Show panel" };
-            if ui.small_button(name).on_hover_text("F1 or Tab; H hides everything").clicked() {
+            if ui.small_button(name).on_hover_text("Tab; H hides everything").clicked() {
                 changes.push(Change::TogglePanel);
+            }
+            if ui.small_button("Help").on_hover_text("F1: keys, settings, how it works").clicked() {
+                changes.push(Change::ToggleHelp);
             }
         });
     });
@@ -247,7 +267,7 @@ fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     section(ui, "Time against error", false, |ui| tuning::show(ui, view, changes));
     section(ui, "Lights", false, |ui| lights::show(ui, view, changes));
     section(ui, "Scene", false, |ui| scenes::section(ui, view, changes));
-    section(ui, "Keys", false, keys);
+    section(ui, "Keys", false, help::keys);
 }
 
 fn section(ui: &mut Ui, title: &str, open: bool, add_contents: impl FnOnce(&mut Ui)) {
@@ -269,18 +289,7 @@ fn presets(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
 
 /// The settings of a preset, as this scene is drawn by this machine in this window.
 fn of_preset(preset: &Preset, view: &View<'_>) -> Settings {
-    let Settings { threads, simd, refine_at_rest, target_fps, present, .. } = *view.settings;
     // The depth "scene" and the scene's own number are the same.
     let depth = view.settings.depth.filter(|depth| *depth == view.scene.render.max_depth);
-    Settings { threads, simd, refine_at_rest, target_fps, present, depth, ..(preset.settings)() }
-}
-
-fn keys(ui: &mut Ui) {
-    egui::Grid::new("keys").num_columns(2).spacing([16.0, 3.0]).show(ui, |ui| {
-        for (keys, what) in HELP {
-            ui.label(RichText::new(*keys).color(theme::STRONG));
-            ui.label(RichText::new(*what).color(theme::WEAK));
-            ui.end_row();
-        }
-    });
+    Settings { depth, ..(preset.settings)() }.in_place_of(view.settings)
 }

@@ -38,7 +38,7 @@ const MAX_PITCH: f64 = 89.0;
 /// Vertical fields of view that can be set, in degrees.
 pub const FOV_RANGE: std::ops::RangeInclusive<f32> = 20.0..=120.0;
 /// Degrees of turn per count of the mouse, as it starts.
-const SENSITIVITY: f64 = 0.12;
+pub const SENSITIVITY: f64 = 0.12;
 
 /// Degrees and a place: what movement changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
