@@ -6,9 +6,11 @@
 //!
 //! Architecture invariant: with nothing moved and nothing changed, nothing is traced, drawn or woken up for.
 
+pub mod bookmarks;
 pub mod error;
 pub mod history;
 pub mod input;
+pub mod labels;
 pub mod overlay;
 pub mod present;
 pub mod survey;
@@ -18,6 +20,7 @@ mod at_rest;
 mod capture;
 mod display;
 mod gpu;
+mod journey;
 mod layer;
 mod look;
 mod lowering;

@@ -1,11 +1,14 @@
 //! One open window: who gets which event, when to trace, when to draw.
 
 use super::at_rest::REST;
+use super::bookmarks::Bookmarks;
 use super::capture::{Capture, PointerHost};
 use super::error::AppError;
 use super::gpu::{Gpu, Target};
 use super::history::History;
 use super::input::{Command, Keys};
+use super::journey::Journey;
+use super::labels::Labels;
 use super::layer::Layer;
 use super::lowering::{lowered, presets_below};
 use super::overlay::{self, Change, Notices, Showing, Shown, Tuning, View};
@@ -19,14 +22,16 @@ use super::{AppExit, AppOptions};
 use crate::measure::metric::{METRICS, metric};
 use crate::measure::tune::{Bound, Task};
 use crate::render::FrameStats;
-use crate::scene::{Camera, Scene};
+use crate::scene::{self, Camera, Scene};
 use crate::settings::Settings;
 use glam::DVec2;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
+use winit::platform::modifier_supplement::KeyEventExtModifierSupplement;
 use winit::window::{CursorGrabMode, Window};
 
 /// Between two steps of the walker: finer than any display, so that a frame starts from a fresh place.
@@ -56,6 +61,9 @@ pub struct Session {
     settings: Settings,
     walker: Walker,
     keys: Keys,
+    labels: Labels,
+    bookmarks: Bookmarks,
+    journey: Journey,
     capture: Capture,
     /// Where the pointer is, in physical pixels.
     pointer: DVec2,
@@ -112,6 +120,9 @@ impl Session {
             settings: options.settings.clone(),
             walker: Walker::in_scene(&options.scene, options.camera),
             keys: Keys::default(),
+            labels: Labels::default(),
+            bookmarks: Bookmarks::default(),
+            journey: Journey::default(),
             capture: Capture::default(),
             pointer: DVec2::ZERO,
             history: History::default(),
@@ -156,7 +167,7 @@ impl Session {
             WindowEvent::CursorMoved { position, .. } => {
                 self.pointer = DVec2::new(position.x, position.y);
                 let turn = self.capture.pointer_moved(&WindowHost(&self.window), self.pointer);
-                self.walker.look(turn);
+                self.look(turn);
             }
             WindowEvent::MouseInput { state, button: MouseButton::Left, .. } if self.on_button(*state) => {
                 return Ok(false);
@@ -192,7 +203,14 @@ impl Session {
     /// The mouse moved, in its own counts; concerns us while the pointer is locked.
     pub fn on_device_motion(&mut self, delta: DVec2) {
         let turn = self.capture.device_moved(delta);
-        self.walker.look(turn);
+        self.look(turn);
+    }
+
+    fn look(&mut self, counts: DVec2) {
+        if counts != DVec2::ZERO {
+            self.journey.stop_replay();
+            self.walker.look(counts);
+        }
     }
 
     /// True to close the window.
@@ -208,7 +226,12 @@ impl Session {
             }
             // A press made up at a change of focus is none.
             ElementState::Pressed if is_synthetic => None,
-            ElementState::Pressed => self.keys.press(key.physical_key, key.repeat),
+            ElementState::Pressed => {
+                if self.labels.learn(key.physical_key, &key.key_without_modifiers()) {
+                    self.repaint(now);
+                }
+                self.keys.press(key.physical_key, key.repeat)
+            }
         };
         if command == Some(Command::Quit) {
             return true;
@@ -221,15 +244,94 @@ impl Session {
             return false;
         }
         match command {
-            Some(Command::ReleasePointer) => self.capture.release(&WindowHost(&self.window)),
+            Some(Command::ReleasePointer) => {
+                self.journey.stop_replay();
+                self.capture.release(&WindowHost(&self.window));
+            }
             Some(Command::TogglePanel) => self.shown = self.shown.with_panel_toggled(),
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
-            Some(Command::Home) => self.walker.go_home(),
+            Some(Command::Home) => {
+                self.journey.stop_replay();
+                self.walker.go_home();
+            }
             Some(Command::ToggleWalking) => self.toggle_walking(now),
+            Some(Command::StoreBookmark(number)) => {
+                self.bookmarks.store(number, self.walker.camera());
+                self.notices.tell(now, format!("Bookmark {number} set: key {number} comes back here"));
+            }
+            Some(Command::GoToBookmark(number)) => match self.bookmarks.get(number) {
+                Some(camera) => self.go_to(camera),
+                None => self.notices.warn(now, format!("There is no bookmark {number}: Ctrl+{number} sets it")),
+            },
+            Some(Command::CopyCamera) => {
+                self.layer.copy(self.walker.camera().to_json());
+                self.notices.tell(now, "Camera copied as JSON");
+            }
+            Some(Command::PasteCamera) => self.paste(now),
+            Some(Command::ToggleRecording) => self.toggle_recording(now),
+            Some(Command::ToggleReplay) => self.toggle_replay(now),
             Some(Command::Quit) | None => return false,
         }
         self.repaint(now);
         false
+    }
+
+    fn go_to(&mut self, camera: Camera) {
+        self.journey.stop_replay();
+        self.walker.go_to(camera);
+    }
+
+    /// Goes to the camera on the clipboard.
+    fn paste(&mut self, now: Instant) {
+        let text = self.layer.pasted().filter(|text| !text.trim().is_empty());
+        match text.as_deref().map(|text| scene::read_camera("clipboard", text)) {
+            None => self.notices.warn(now, "There is no text on the clipboard to paste a camera from"),
+            Some(Err(error)) => self.notices.warn(now, format!("What was pasted is no camera: {error}")),
+            Some(Ok(camera)) => {
+                self.go_to(camera);
+                self.notices.tell(now, "Camera pasted");
+            }
+        }
+    }
+
+    fn toggle_recording(&mut self, now: Instant) {
+        let camera = self.walker.camera();
+        if self.journey.is_recording() {
+            self.journey.finish(now, camera, PathBuf::new(), self.walker.surroundings());
+        } else {
+            self.journey.record(now, camera);
+            self.notices.tell(now, self.labels.of("Recording where you go: R stops"));
+        }
+    }
+
+    fn toggle_replay(&mut self, now: Instant) {
+        if self.journey.is_recording() {
+            self.notices.warn(now, self.labels.of("Still recording: R stops"));
+        } else if !self.journey.stop_replay() && !self.journey.replay(now) {
+            self.notices.warn(now, self.labels.of("Nothing is recorded yet: R starts"));
+        }
+    }
+
+    /// Follows a recording and a replay; says when to be called again.
+    fn travel(&mut self, now: Instant) -> Option<Instant> {
+        let base = self.walker.camera();
+        if let Some(camera) = self.journey.camera(now, &base) {
+            self.walker.go_to(camera);
+        }
+        if self.journey.see(now, self.walker.camera()) {
+            self.toggle_recording(now);
+        }
+        if let Some(written) = self.journey.written() {
+            match written {
+                Ok(file) => {
+                    let told = format!("Path written to {}: P replays it", file.display());
+                    self.notices.tell(now, self.labels.of(&told));
+                }
+                Err(reason) => self.notices.warn(now, reason),
+            }
+            self.repaint(now);
+        }
+        self.journey.next(now, STEP)
     }
 
     /// Fly or walk. The speed that held keys had so far was that of the other.
@@ -237,9 +339,9 @@ impl Session {
         if !self.walker.toggle_walking(&self.scene.geometry) {
             self.notices.warn(now, NO_ROOM);
         } else if self.walker.is_walking() {
-            self.notices.tell(now, "Walking: Space jumps, G flies");
+            self.notices.tell(now, self.labels.of("Walking: Space jumps, G flies"));
         } else {
-            self.notices.tell(now, "Flying: G walks");
+            self.notices.tell(now, self.labels.of("Flying: G walks"));
         }
         self.step(now);
     }
@@ -289,10 +391,11 @@ impl Session {
     /// Moves on, asks for frames and drawings as needed, and says when to be called again at the latest.
     pub fn tick(&mut self, now: Instant) -> Option<Instant> {
         self.step(now);
+        let travel = self.travel(now);
         let rest = self.post(now);
         let mut next = self.tracer.drop_outdated();
         let mut call_at = |at: Instant| next = Some(next.map_or(at, |next: Instant| next.min(at)));
-        rest.into_iter().for_each(&mut call_at);
+        rest.into_iter().chain(travel).for_each(&mut call_at);
         if self.stepped.is_some() {
             call_at(now + STEP);
         }
@@ -314,6 +417,9 @@ impl Session {
     /// Walks up to `now`, as far as keys were held until here.
     fn step(&mut self, now: Instant) {
         let motion = self.keys.motion();
+        if motion.is_moving() {
+            self.journey.stop_replay();
+        }
         let passed = self.stepped.map_or(Duration::ZERO, |before| now.saturating_duration_since(before));
         if !self.walker.advance(&self.scene.geometry, motion, passed.as_secs_f64()) {
             self.notices.warn(now, NO_ROOM);
@@ -408,6 +514,12 @@ impl Session {
                 is_elsewhere: self.survey.as_ref().is_some_and(|survey| survey.camera != self.walker.camera()),
             },
             notices: self.notices.current(),
+            labels: &self.labels,
+            activity: match (self.journey.is_recording(), self.journey.is_replaying()) {
+                (true, _) => Some("recording"),
+                (_, true) => Some("replaying"),
+                _ => None,
+            },
         };
         let mut changes = Vec::new();
         let shown = self.shown;
@@ -445,11 +557,14 @@ impl Session {
                 }
             }
             Change::Camera(index) => {
-                if let Some(named) = self.scene.cameras.get(index) {
-                    self.walker.go_to(named.camera);
+                if let Some(camera) = self.scene.cameras.get(index).map(|named| named.camera) {
+                    self.go_to(camera);
                 }
             }
-            Change::Home => self.walker.go_home(),
+            Change::Home => {
+                self.journey.stop_replay();
+                self.walker.go_home();
+            }
             Change::Speed(speed) => self.walker.set_speed(speed),
             Change::Walking(_) => self.toggle_walking(Instant::now()),
             Change::EyeHeight(height) => {

@@ -23,7 +23,7 @@ pub mod texture;
 pub use builtin::builtin;
 pub use camera::Camera;
 pub use error::{SceneError, Warning};
-pub use format::{FORMATS, LoadOptions, load, load_embedded, load_text};
+pub use format::{FORMATS, LoadOptions, load, load_embedded, load_text, read_camera};
 pub use light::Light;
 pub use limits::Limits;
 pub use material::Material;

@@ -3,6 +3,7 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use raywalk::app::history::History;
+use raywalk::app::labels::Labels;
 use raywalk::app::overlay::{self, Change, Notices, Showing, Shown, Tuning, View, theme};
 use raywalk::app::survey::{End, Point, Survey};
 use raywalk::geometry::Geometry;
@@ -44,6 +45,7 @@ struct Panel {
     bound: Bound,
     survey: Option<Survey>,
     notices: Notices,
+    labels: Labels,
     changes: Vec<Change>,
 }
 
@@ -53,8 +55,8 @@ impl Panel {
         let shown = Shown::default();
         let (history, showing) = (History::default(), Showing::AsSet);
         let bound = Bound::parse("flip=0.01").expect("right");
-        let (notices, changes) = (Notices::default(), Vec::new());
-        Self { scene: scene(), settings, history, shown, showing, bound, survey: None, notices, changes }
+        let (notices, labels, changes) = (Notices::default(), Labels::default(), Vec::new());
+        Self { scene: scene(), settings, history, shown, showing, bound, survey: None, notices, labels, changes }
     }
 
     fn show(&mut self, ui: &mut egui::Ui) {
@@ -79,6 +81,8 @@ impl Panel {
                 is_elsewhere: false,
             },
             notices: self.notices.current(),
+            labels: &self.labels,
+            activity: None,
         };
         let changes = overlay::show(ui, &view, self.shown);
         for change in &changes {
@@ -213,6 +217,22 @@ fn the_status_line_says_rate_time_and_size() {
     harness.state_mut().shown.overlay = false;
     harness.run();
     assert!(harness.query_by_label_contains("1280x720").is_none(), "everything is hidden");
+}
+
+#[test]
+fn walking_is_switched_and_keys_have_the_users_names() {
+    let mut panel = Panel::new();
+    let z = winit::keyboard::Key::Character("z".into());
+    panel.labels.learn(winit::keyboard::PhysicalKey::Code(winit::keyboard::KeyCode::KeyW), &z);
+    let mut harness = panel.harness();
+    harness.get_by_label("walk").click();
+    harness.run();
+    assert_eq!(harness.state().changes, [Change::Walking(true)]);
+    for section in ["Settings", "Last frame", "Keys"] {
+        harness.get_by_label(section).click();
+        harness.run();
+    }
+    harness.get_by_label("Z A S D");
 }
 
 #[test]

@@ -16,6 +16,7 @@ pub use tuning::{Tuning, usual_bound};
 use super::at_rest::SAMPLES;
 use super::history::History;
 use super::input::HELP;
+use super::labels::Labels;
 use crate::measure::tune::Bound;
 use crate::render::FrameStats;
 use crate::scene::Scene;
@@ -62,6 +63,10 @@ pub struct View<'a> {
     pub tuning: Tuning<'a>,
     /// What was just done or went wrong.
     pub notices: &'a [Notice],
+    /// How keys are called on the user's keyboard.
+    pub labels: &'a Labels,
+    /// What goes on beside: "recording", "replaying".
+    pub activity: Option<&'a str>,
 }
 
 /// What the picture is, against what the settings ask for.
@@ -208,8 +213,13 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
             }
         });
     });
-    ui.label(RichText::new(view.showing.words(view.settings)).small().color(theme::WEAK))
-        .on_hover_text("what the picture is; see refine-at-rest and target-fps");
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(view.showing.words(view.settings)).small().color(theme::WEAK))
+            .on_hover_text("what the picture is; see refine-at-rest and target-fps");
+        if let Some(activity) = view.activity {
+            ui.label(RichText::new(activity).small().strong().color(theme::WARNING));
+        }
+    });
 }
 
 fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
@@ -222,7 +232,7 @@ fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     section(ui, "View", true, |ui| controls::view(ui, view, changes));
     section(ui, "Time against error", false, |ui| tuning::show(ui, view, changes));
     section(ui, "Scene", false, |ui| scene(ui, view.scene));
-    section(ui, "Keys", false, keys);
+    section(ui, "Keys", false, |ui| keys(ui, view.labels));
 }
 
 fn section(ui: &mut Ui, title: &str, open: bool, add_contents: impl FnOnce(&mut Ui)) {
@@ -263,10 +273,10 @@ fn scene(ui: &mut Ui, scene: &Scene) {
     }
 }
 
-fn keys(ui: &mut Ui) {
+fn keys(ui: &mut Ui, labels: &Labels) {
     egui::Grid::new("keys").num_columns(2).spacing([16.0, 3.0]).show(ui, |ui| {
         for (keys, what) in HELP {
-            ui.label(RichText::new(*keys).color(theme::STRONG));
+            ui.label(RichText::new(labels.of(keys)).color(theme::STRONG));
             ui.label(RichText::new(*what).color(theme::WEAK));
             ui.end_row();
         }
