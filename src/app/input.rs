@@ -59,6 +59,18 @@ pub enum Command {
     ReduceUi,
     /// Panel and text of the usual size.
     ResetUi,
+    /// Keep the view under a number.
+    StoreBookmark(u8),
+    /// Go to the view of a number.
+    GoToBookmark(u8),
+    /// Put the camera on the clipboard.
+    CopyCamera,
+    /// Go to the camera on the clipboard.
+    PasteCamera,
+    /// Start or stop recording a camera path.
+    ToggleRecording,
+    /// Start or stop replaying the last one.
+    ToggleReplay,
 }
 
 /// Keys that act while held. Codes name positions, so that WASD is the same block of keys on every layout.
@@ -95,6 +107,28 @@ pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::NumpadSubtract, true, Command::ReduceUi),
     (KeyCode::Digit0, true, Command::ResetUi),
     (KeyCode::Numpad0, true, Command::ResetUi),
+    (KeyCode::KeyC, true, Command::CopyCamera),
+    (KeyCode::KeyV, true, Command::PasteCamera),
+    (KeyCode::KeyR, false, Command::ToggleRecording),
+    (KeyCode::KeyP, false, Command::ToggleReplay),
+    (KeyCode::Digit1, false, Command::GoToBookmark(1)),
+    (KeyCode::Digit1, true, Command::StoreBookmark(1)),
+    (KeyCode::Digit2, false, Command::GoToBookmark(2)),
+    (KeyCode::Digit2, true, Command::StoreBookmark(2)),
+    (KeyCode::Digit3, false, Command::GoToBookmark(3)),
+    (KeyCode::Digit3, true, Command::StoreBookmark(3)),
+    (KeyCode::Digit4, false, Command::GoToBookmark(4)),
+    (KeyCode::Digit4, true, Command::StoreBookmark(4)),
+    (KeyCode::Digit5, false, Command::GoToBookmark(5)),
+    (KeyCode::Digit5, true, Command::StoreBookmark(5)),
+    (KeyCode::Digit6, false, Command::GoToBookmark(6)),
+    (KeyCode::Digit6, true, Command::StoreBookmark(6)),
+    (KeyCode::Digit7, false, Command::GoToBookmark(7)),
+    (KeyCode::Digit7, true, Command::StoreBookmark(7)),
+    (KeyCode::Digit8, false, Command::GoToBookmark(8)),
+    (KeyCode::Digit8, true, Command::StoreBookmark(8)),
+    (KeyCode::Digit9, false, Command::GoToBookmark(9)),
+    (KeyCode::Digit9, true, Command::StoreBookmark(9)),
 ];
 
 /// The help shown in the overlay: keys and what they do.
@@ -109,6 +143,9 @@ pub const HELP: &[(&str, &str)] = &[
     ("Home", "back to the start"),
     ("F1", "help"),
     ("Tab", "this panel"),
+    ("1 to 9", "go to a bookmark; with Ctrl, set it"),
+    ("Ctrl+C, Ctrl+V", "copy, paste the camera"),
+    ("R, P", "record a camera path, replay it"),
     ("H", "hide everything"),
     ("I, right click", "tell of the thing under the pointer"),
     ("Ctrl+O", "open a scene; or drop one on the window"),

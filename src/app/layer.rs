@@ -92,6 +92,16 @@ impl Layer {
             .is_some_and(|layer| layer.order != egui::Order::Background)
     }
 
+    /// Puts a text on the clipboard.
+    pub fn copy(&mut self, text: String) {
+        self.state.set_clipboard_text(text);
+    }
+
+    /// The text on the clipboard, if there is one.
+    pub fn pasted(&mut self) -> Option<String> {
+        self.state.clipboard_text()
+    }
+
     /// Whether the overlay is being used with the pointer.
     pub fn is_pointed_at(&self) -> bool {
         self.pointed_at

@@ -6,11 +6,13 @@
 //!
 //! Architecture invariant: with nothing moved and nothing changed, nothing is traced, drawn or woken up for.
 
+pub mod bookmarks;
 pub mod config;
 pub mod error;
 pub mod history;
 pub mod input;
 pub mod inspection;
+pub mod labels;
 pub mod lighting;
 pub mod overlay;
 pub mod present;
@@ -25,6 +27,7 @@ mod desktop;
 mod display;
 mod errands;
 mod gpu;
+mod journey;
 mod layer;
 mod look;
 mod lowering;

@@ -10,6 +10,8 @@ use super::gpu::{Gpu, Target};
 use super::history::History;
 use super::input::{Command, Keys};
 use super::inspection::{self, Inspection};
+use super::journey::Journey;
+use super::labels::Labels;
 use super::layer::Layer;
 use super::lighting::Lighting;
 use super::lowering::{lowered, presets_below};
@@ -31,12 +33,13 @@ use crate::render::FrameStats;
 use crate::scene::{self, Camera, Scene};
 use crate::settings::Settings;
 use glam::DVec2;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
+use winit::platform::modifier_supplement::KeyEventExtModifierSupplement;
 use winit::window::{CursorGrabMode, Window};
 
 /// Between two steps of the walker: finer than any display, so that a frame starts from a fresh place.
@@ -75,6 +78,8 @@ pub struct Session {
     settings: Settings,
     walker: Walker,
     keys: Keys,
+    labels: Labels,
+    journey: Journey,
     capture: Capture,
     /// Where the pointer is, in physical pixels.
     pointer: DVec2,
@@ -166,6 +171,8 @@ impl Session {
             scene,
             inspection: None,
             keys: Keys::default(),
+            labels: Labels::default(),
+            journey: Journey::default(),
             capture: Capture::default(),
             pointer: DVec2::ZERO,
             history: History::default(),
@@ -269,7 +276,7 @@ impl Session {
             WindowEvent::CursorMoved { position, .. } => {
                 self.pointer = DVec2::new(position.x, position.y);
                 let turn = self.capture.pointer_moved(&WindowHost(&self.window), self.pointer);
-                self.walker.look(turn);
+                self.look(turn);
             }
             WindowEvent::MouseInput { state, button: MouseButton::Left, .. } if self.on_button(*state) => {
                 return Ok(false);
@@ -319,7 +326,14 @@ impl Session {
     /// The mouse moved, in its own counts; concerns us while the pointer is locked.
     pub fn on_device_motion(&mut self, delta: DVec2) {
         let turn = self.capture.device_moved(delta);
-        self.walker.look(turn);
+        self.look(turn);
+    }
+
+    fn look(&mut self, counts: DVec2) {
+        if counts != DVec2::ZERO {
+            self.journey.stop_replay();
+            self.walker.look(counts);
+        }
     }
 
     /// True to close the window.
@@ -335,7 +349,12 @@ impl Session {
             }
             // A press made up at a change of focus is none.
             ElementState::Pressed if is_synthetic => None,
-            ElementState::Pressed => self.keys.press(key.physical_key, key.repeat),
+            ElementState::Pressed => {
+                if self.labels.learn(key.physical_key, &key.key_without_modifiers()) {
+                    self.repaint(now);
+                }
+                self.keys.press(key.physical_key, key.repeat)
+            }
         };
         if command == Some(Command::Quit) {
             return true;
@@ -351,6 +370,7 @@ impl Session {
             Some(Command::ReleasePointer) if self.capture.is_active() => {
                 self.capture.release(&WindowHost(&self.window));
             }
+            Some(Command::ReleasePointer) if self.journey.stop_replay() => {}
             Some(Command::ReleasePointer) if self.shown.help => self.shown.help = false,
             Some(Command::ReleasePointer) => self.wish(Wish::Cancel),
             Some(Command::ToggleHelp) => {
@@ -363,13 +383,33 @@ impl Session {
             Some(Command::Inspect) => self.inspect(),
             Some(Command::TogglePanel) => self.shown = self.shown.with_panel_toggled(),
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
-            Some(Command::Home) => self.walker.go_home(),
+            Some(Command::Home) => {
+                self.journey.stop_replay();
+                self.walker.go_home();
+            }
             Some(Command::ToggleWalking) => self.toggle_walking(now),
             Some(Command::Screenshot) => self.take_screenshot(now),
             Some(Command::ToggleFullscreen) => desktop::toggle_fullscreen(&self.window),
             Some(Command::EnlargeUi) => self.scale_ui(self.ui_scale * UI_STEP),
             Some(Command::ReduceUi) => self.scale_ui(self.ui_scale / UI_STEP),
             Some(Command::ResetUi) => self.scale_ui(1.0),
+            Some(Command::StoreBookmark(number)) => {
+                self.keeper.config.bookmarks.of_mut(self.scenes.file()).store(number, self.walker.camera());
+                self.notices.tell(now, format!("Bookmark {number} set: key {number} comes back here"));
+            }
+            Some(Command::GoToBookmark(number)) => {
+                match self.keeper.config.bookmarks.of(self.scenes.file()).get(number) {
+                    Some(camera) => self.go_to(camera),
+                    None => self.notices.warn(now, format!("There is no bookmark {number}: Ctrl+{number} sets it")),
+                }
+            }
+            Some(Command::CopyCamera) => {
+                self.layer.copy(self.walker.camera().to_json());
+                self.notices.tell(now, "Camera copied as JSON");
+            }
+            Some(Command::PasteCamera) => self.paste(now),
+            Some(Command::ToggleRecording) => self.toggle_recording(now),
+            Some(Command::ToggleReplay) => self.toggle_replay(now),
             Some(Command::Quit) | None => return false,
         }
         self.keeper.touch(now);
@@ -377,14 +417,72 @@ impl Session {
         false
     }
 
+    fn go_to(&mut self, camera: Camera) {
+        self.journey.stop_replay();
+        self.walker.go_to(camera);
+    }
+
+    /// Goes to the camera on the clipboard.
+    fn paste(&mut self, now: Instant) {
+        let text = self.layer.pasted().filter(|text| !text.trim().is_empty());
+        match text.as_deref().map(|text| scene::read_camera("clipboard", text)) {
+            None => self.notices.warn(now, "There is no text on the clipboard to paste a camera from"),
+            Some(Err(error)) => self.notices.warn(now, format!("What was pasted is no camera: {error}")),
+            Some(Ok(camera)) => {
+                self.go_to(camera);
+                self.notices.tell(now, "Camera pasted");
+            }
+        }
+    }
+
+    fn toggle_recording(&mut self, now: Instant) {
+        let camera = self.walker.camera();
+        if self.journey.is_recording() {
+            self.journey.finish(now, camera, PathBuf::new(), self.walker.surroundings());
+        } else {
+            self.journey.record(now, camera);
+            self.notices.tell(now, self.labels.of("Recording where you go: R stops"));
+        }
+    }
+
+    fn toggle_replay(&mut self, now: Instant) {
+        if self.journey.is_recording() {
+            self.notices.warn(now, self.labels.of("Still recording: R stops"));
+        } else if !self.journey.stop_replay() && !self.journey.replay(now) {
+            self.notices.warn(now, self.labels.of("Nothing is recorded yet: R starts"));
+        }
+    }
+
+    /// Follows a recording and a replay; says when to be called again.
+    fn travel(&mut self, now: Instant) -> Option<Instant> {
+        let base = self.walker.camera();
+        if let Some(camera) = self.journey.camera(now, &base) {
+            self.walker.go_to(camera);
+        }
+        if self.journey.see(now, self.walker.camera()) {
+            self.toggle_recording(now);
+        }
+        if let Some(written) = self.journey.written() {
+            match written {
+                Ok(file) => {
+                    let told = format!("Path written to {}: P replays it", file.display());
+                    self.notices.tell(now, self.labels.of(&told));
+                }
+                Err(reason) => self.notices.warn(now, reason),
+            }
+            self.repaint(now);
+        }
+        self.journey.next(now, STEP)
+    }
+
     /// Fly or walk. The speed that held keys had so far was that of the other.
     fn toggle_walking(&mut self, now: Instant) {
         if !self.walker.toggle_walking(&self.scene.geometry) {
             self.notices.warn(now, NO_ROOM);
         } else if self.walker.is_walking() {
-            self.notices.tell(now, "Walking: Space jumps, G flies");
+            self.notices.tell(now, self.labels.of("Walking: Space jumps, G flies"));
         } else {
-            self.notices.tell(now, "Flying: G walks");
+            self.notices.tell(now, self.labels.of("Flying: G walks"));
         }
         self.step(now);
     }
@@ -501,14 +599,14 @@ impl Session {
         if self.scenes.open_dropped() {
             self.repaint(now);
         }
-        let rest = self.post(now);
-        let mut next = self.tracer.drop_outdated();
-        let mut call_at = |at: Instant| next = Some(next.map_or(at, |next: Instant| next.min(at)));
-        rest.into_iter().for_each(&mut call_at);
         if self.keeper.due().is_some_and(|due| due <= now) {
             self.save_config();
         }
-        self.keeper.due().into_iter().for_each(&mut call_at);
+        let travel = self.travel(now);
+        let rest = self.post(now);
+        let mut next = self.tracer.drop_outdated();
+        let mut call_at = |at: Instant| next = Some(next.map_or(at, |next: Instant| next.min(at)));
+        rest.into_iter().chain(travel).chain(self.keeper.due()).for_each(&mut call_at);
         if self.stepped.is_some() {
             call_at(now + STEP);
         }
@@ -530,6 +628,9 @@ impl Session {
     /// Walks up to `now`, as far as keys were held until here.
     fn step(&mut self, now: Instant) {
         let motion = self.keys.motion();
+        if motion.is_moving() {
+            self.journey.stop_replay();
+        }
         let passed = self.stepped.map_or(Duration::ZERO, |before| now.saturating_duration_since(before));
         if !self.walker.advance(&self.scene.geometry, motion, passed.as_secs_f64()) {
             self.notices.warn(now, NO_ROOM);
@@ -631,6 +732,12 @@ impl Session {
             stands: self.traced.as_ref().map(|(job, _)| job.camera).filter(|camera| *camera == self.walker.camera()),
             crosshair: self.capture.is_active(),
             notices: self.notices.current(),
+            labels: &self.labels,
+            activity: match (self.journey.is_recording(), self.journey.is_replaying()) {
+                (true, _) => Some("recording"),
+                (_, true) => Some("replaying"),
+                _ => None,
+            },
         };
         let mut changes = Vec::new();
         let shown = self.shown;
@@ -672,11 +779,14 @@ impl Session {
                 }
             }
             Change::Camera(index) => {
-                if let Some(named) = self.scene.cameras.get(index) {
-                    self.walker.go_to(named.camera);
+                if let Some(camera) = self.scene.cameras.get(index).map(|named| named.camera) {
+                    self.go_to(camera);
                 }
             }
-            Change::Home => self.walker.go_home(),
+            Change::Home => {
+                self.journey.stop_replay();
+                self.walker.go_home();
+            }
             Change::Speed(speed) => self.walker.set_speed(speed),
             Change::Walking(_) => self.toggle_walking(Instant::now()),
             Change::EyeHeight(height) => {

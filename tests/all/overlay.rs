@@ -5,6 +5,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use raywalk::app::history::History;
 use raywalk::app::input::HELP;
 use raywalk::app::inspection::Inspection;
+use raywalk::app::labels::Labels;
 use raywalk::app::lighting::Dial;
 use raywalk::app::overlay::{self, Change, Notices, Showing, Shown, Tuning, View, theme};
 use raywalk::app::scenes::{Failure, Loading, Report, Wish};
@@ -54,6 +55,7 @@ struct Panel {
     lights: Vec<Dial>,
     inspection: Option<Inspection>,
     notices: Notices,
+    labels: Labels,
     changes: Vec<Change>,
 }
 
@@ -76,6 +78,7 @@ impl Panel {
             lights: Vec::new(),
             inspection: None,
             notices: Notices::default(),
+            labels: Labels::default(),
             changes: Vec::new(),
         }
     }
@@ -108,6 +111,8 @@ impl Panel {
             stands: Some(Camera::default()),
             crosshair: true,
             notices: self.notices.current(),
+            labels: &self.labels,
+            activity: None,
         };
         let changes = overlay::show(ui, &view, self.shown);
         for change in &changes {
@@ -335,6 +340,22 @@ fn the_status_line_says_rate_time_and_size() {
     harness.state_mut().shown.overlay = false;
     harness.run();
     assert!(harness.query_by_label_contains("1280x720").is_none(), "everything is hidden");
+}
+
+#[test]
+fn walking_is_switched_and_keys_have_the_users_names() {
+    let mut panel = Panel::new();
+    let z = winit::keyboard::Key::Character("z".into());
+    panel.labels.learn(winit::keyboard::PhysicalKey::Code(winit::keyboard::KeyCode::KeyW), &z);
+    let mut harness = panel.harness();
+    harness.get_by_label("walk").click();
+    harness.run();
+    assert_eq!(harness.state().changes, [Change::Walking(true)]);
+    for section in ["Settings", "Last frame", "Keys"] {
+        harness.get_by_label(section).click();
+        harness.run();
+    }
+    harness.get_by_label("Z A S D");
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod store;
 pub use keeper::Keeper;
 pub use store::Store;
 
+use crate::app::bookmarks::BookmarkShelf;
 use crate::app::scenes::RecentFiles;
 use crate::math::simd;
 use crate::settings::{ROWS, Row, Settings};
@@ -40,6 +41,8 @@ pub struct Config {
     pub screenshots: Option<String>,
     /// Files that were opened, the newest first.
     pub recent: RecentFiles,
+    /// Views to come back to, by scene.
+    pub bookmarks: BookmarkShelf,
     /// What another version of the program remembers.
     #[serde(flatten)]
     pub others: serde_json::Map<String, serde_json::Value>,
@@ -70,6 +73,7 @@ impl Default for Config {
             panel: true,
             screenshots: None,
             recent: RecentFiles::default(),
+            bookmarks: BookmarkShelf::default(),
             others: serde_json::Map::new(),
         }
     }

@@ -4,6 +4,7 @@
 use super::{Change, theme};
 use crate::app::history::ONE_PERCENT_LOW;
 use crate::app::input::HELP;
+use crate::app::labels::Labels;
 use crate::settings::{Kind, PRESETS, Promise, ROWS, Row};
 use egui::{Align2, CollapsingHeader, RichText, ScrollArea, Ui, Window};
 
@@ -70,7 +71,7 @@ const TOPICS: [(&str, &str); 8] = [
 ];
 
 /// Draws the window; asks to close it when its cross is clicked.
-pub fn show(ui: &Ui, changes: &mut Vec<Change>) {
+pub fn show(ui: &Ui, labels: &Labels, changes: &mut Vec<Change>) {
     let room = ui.ctx().content_rect().size();
     let mut open = true;
     Window::new("Help")
@@ -87,15 +88,15 @@ pub fn show(ui: &Ui, changes: &mut Vec<Change>) {
                 .max_height(height)
                 .min_scrolled_height(height)
                 .auto_shrink([false, true])
-                .show(ui, contents);
+                .show(ui, |ui| contents(ui, labels));
         });
     if !open {
         changes.push(Change::ToggleHelp);
     }
 }
 
-fn contents(ui: &mut Ui) {
-    section(ui, "Keys", keys);
+fn contents(ui: &mut Ui, labels: &Labels) {
+    section(ui, "Keys", |ui| keys(ui, labels));
     section(ui, "How it works", topics);
     section(ui, "What settings promise", promises);
     section(ui, "Presets", |ui| {
@@ -115,10 +116,10 @@ fn section(ui: &mut Ui, title: &'static str, add_contents: impl FnOnce(&mut Ui))
 }
 
 /// Keys and what they do: in the help and in the panel.
-pub fn keys(ui: &mut Ui) {
+pub fn keys(ui: &mut Ui, labels: &Labels) {
     egui::Grid::new("keys").num_columns(2).spacing([16.0, 3.0]).show(ui, |ui| {
         for (keys, what) in HELP {
-            ui.label(RichText::new(*keys).color(theme::STRONG));
+            ui.label(RichText::new(labels.of(keys)).color(theme::STRONG));
             ui.label(RichText::new(*what).color(theme::WEAK));
             ui.end_row();
         }

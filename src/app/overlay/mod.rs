@@ -21,6 +21,7 @@ pub use tuning::{Tuning, usual_bound};
 use super::at_rest::SAMPLES;
 use super::history::History;
 use super::inspection::Inspection;
+use super::labels::Labels;
 use super::lighting::Dial;
 use super::scenes::{Report, Wish};
 use crate::measure::tune::Bound;
@@ -79,6 +80,10 @@ pub struct View<'a> {
     pub crosshair: bool,
     /// What was just done or went wrong.
     pub notices: &'a [Notice],
+    /// How keys are called on the user's keyboard.
+    pub labels: &'a Labels,
+    /// What goes on beside: "recording", "replaying".
+    pub activity: Option<&'a str>,
 }
 
 /// What the picture is, against what the settings ask for.
@@ -221,7 +226,7 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
             });
         });
     if shown.help {
-        help::show(ui, &mut changes);
+        help::show(ui, view.labels, &mut changes);
     }
     changes
 }
@@ -252,8 +257,13 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
             }
         });
     });
-    ui.label(RichText::new(view.showing.words(view.settings)).small().color(theme::WEAK))
-        .on_hover_text("what the picture is; see refine-at-rest and target-fps");
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(view.showing.words(view.settings)).small().color(theme::WEAK))
+            .on_hover_text("what the picture is; see refine-at-rest and target-fps");
+        if let Some(activity) = view.activity {
+            ui.label(RichText::new(activity).small().strong().color(theme::WARNING));
+        }
+    });
 }
 
 fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
@@ -267,7 +277,7 @@ fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     section(ui, "Time against error", false, |ui| tuning::show(ui, view, changes));
     section(ui, "Lights", false, |ui| lights::show(ui, view, changes));
     section(ui, "Scene", false, |ui| scenes::section(ui, view, changes));
-    section(ui, "Keys", false, help::keys);
+    section(ui, "Keys", false, |ui| help::keys(ui, view.labels));
 }
 
 fn section(ui: &mut Ui, title: &str, open: bool, add_contents: impl FnOnce(&mut Ui)) {

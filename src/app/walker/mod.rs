@@ -65,6 +65,7 @@ pub struct Walker {
     /// Mouse forward looks down.
     pub invert_look: bool,
     home: Camera,
+    surroundings: f64,
     /// The camera last gone to. Until the walker moves from it, it stays what it is, bit for bit.
     stance: Camera,
     moved: bool,
@@ -90,6 +91,7 @@ impl Walker {
             sensitivity: SENSITIVITY,
             invert_look: false,
             home,
+            surroundings,
             stance: home,
             moved: false,
             upright,
@@ -218,6 +220,11 @@ impl Walker {
             self.pose.eye = eye;
             self.moved = true;
         }
+    }
+
+    /// Size of what is around the start, in metres.
+    pub fn surroundings(&self) -> f64 {
+        self.surroundings
     }
 
     /// Whether the walker is on their feet.
