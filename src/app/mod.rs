@@ -9,6 +9,7 @@
 pub mod error;
 pub mod history;
 pub mod input;
+pub mod maps;
 pub mod overlay;
 pub mod present;
 pub mod survey;
