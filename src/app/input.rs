@@ -24,6 +24,8 @@ pub enum Hold {
     Fast,
     /// Slower.
     Slow,
+    /// The exact picture.
+    Exact,
 }
 
 /// What a key does once, when it goes down.
@@ -39,6 +41,10 @@ pub enum Command {
     ToggleOverlay,
     /// Back to where the walk started.
     Home,
+    /// The next map of what the methods do.
+    NextMap,
+    /// Show two settings side by side, or no longer.
+    ToggleSplit,
 }
 
 /// Keys that act while held. Codes name positions, so that WASD is the same block of keys on every layout.
@@ -53,6 +59,7 @@ pub const HOLD_KEYS: &[(KeyCode, Hold)] = &[
     (KeyCode::ShiftRight, Hold::Fast),
     (KeyCode::AltLeft, Hold::Slow),
     (KeyCode::AltRight, Hold::Slow),
+    (KeyCode::KeyX, Hold::Exact),
 ];
 
 /// Keys that act once; `true` where Ctrl must be held.
@@ -63,6 +70,8 @@ pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::Tab, false, Command::TogglePanel),
     (KeyCode::KeyH, false, Command::ToggleOverlay),
     (KeyCode::Home, false, Command::Home),
+    (KeyCode::KeyV, false, Command::NextMap),
+    (KeyCode::KeyB, false, Command::ToggleSplit),
 ];
 
 /// The help shown in the overlay: keys and what they do.
@@ -74,6 +83,9 @@ pub const HELP: &[(&str, &str)] = &[
     ("Click", "look with the mouse"),
     ("Esc", "let the mouse go"),
     ("Home", "back to the start"),
+    ("V", "next map of what the methods do"),
+    ("X, held", "the exact picture"),
+    ("B", "two settings side by side"),
     ("F1, Tab", "this panel"),
     ("H", "hide everything"),
     ("Ctrl+Q", "quit"),
@@ -143,9 +155,14 @@ impl Keys {
         self.ctrl = false;
     }
 
+    /// Whether a key is down that does this.
+    pub fn is_held(&self, what: Hold) -> bool {
+        HOLD_KEYS.iter().any(|(code, hold)| *hold == what && self.down.contains(code))
+    }
+
     /// What the held keys ask for. Opposite keys cancel.
     pub fn motion(&self) -> Motion {
-        let held = |what: Hold| HOLD_KEYS.iter().any(|(code, hold)| *hold == what && self.down.contains(code));
+        let held = |what: Hold| self.is_held(what);
         let axis = |plus: Hold, minus: Hold| f64::from(i8::from(held(plus)) - i8::from(held(minus)));
         Motion {
             right: axis(Hold::Right, Hold::Left),

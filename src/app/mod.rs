@@ -7,9 +7,11 @@
 //! Architecture invariant: with nothing moved and nothing changed, nothing is traced, drawn or woken up for.
 
 pub mod error;
+pub mod exam;
 pub mod history;
 pub mod input;
 pub mod maps;
+pub mod methods;
 pub mod overlay;
 pub mod present;
 pub mod survey;
@@ -28,6 +30,7 @@ mod session;
 mod steering;
 mod tracer;
 mod viewer;
+mod views;
 
 pub use error::AppError;
 

@@ -3,11 +3,13 @@
 use super::at_rest::REST;
 use super::capture::{Capture, PointerHost};
 use super::error::AppError;
+use super::exam::{Exam, Subject};
 use super::gpu::{Gpu, Target};
 use super::history::History;
-use super::input::{Command, Keys};
+use super::input::{Command, Hold, Keys};
 use super::layer::Layer;
-use super::lowering::{lowered, presets_below};
+use super::lowering::{Lowering, lowered, presets_below};
+use super::methods::{self, Methods};
 use super::overlay::{self, Change, Showing, Shown, Tuning, View};
 use super::pacing::{Limiter, Rates};
 use super::present::Presenter;
@@ -64,6 +66,7 @@ pub struct Session {
     /// What the last frame shows, and with how many samples a pixel if it was refined.
     traced: Option<(Job, Option<u32>)>,
     steering: Steering,
+    methods: Methods,
     /// What the next search has to keep, and what is known of the last.
     bound: Bound,
     survey: Option<Survey>,
@@ -118,6 +121,7 @@ impl Session {
             posted: None,
             traced: None,
             steering: Steering::new(presets_below(&options.settings)),
+            methods: Methods::new(&options.settings),
             bound: overlay::usual_bound(metric("flip").unwrap_or(&METRICS[0])),
             survey: None,
             stands: (options.camera, None),
@@ -222,6 +226,8 @@ impl Session {
             Some(Command::TogglePanel) => self.shown = self.shown.with_panel_toggled(),
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
             Some(Command::Home) => self.walker.go_home(),
+            Some(Command::NextMap) => self.change_methods(methods::Change::Map(self.methods.map.next())),
+            Some(Command::ToggleSplit) => self.change_methods(methods::Change::Split(!self.methods.split.is_on)),
             Some(Command::Quit) | None => return false,
         }
         self.repaint(now);
@@ -249,8 +255,17 @@ impl Session {
             self.survey = Some(survey);
             self.figures.demand(Instant::now(), self.rates.figures);
         }
+        if let Some(exam) = self.tracer.take_exam() {
+            self.methods.exam = Some(exam);
+            self.figures.demand(Instant::now(), self.rates.figures);
+        }
         let Some(frame) = self.tracer.take() else { return };
         let now = Instant::now();
+        // The same view with fewer samples is a step back: it is on its way to more.
+        let is_less = self.traced.as_ref().is_some_and(|(job, samples)| *job == frame.job && *samples > frame.samples);
+        if is_less || !self.methods.shows(&frame) {
+            return frame.into_films().for_each(|film| self.tracer.recycle(film));
+        }
         if frame.samples.is_none() {
             self.history.record(frame.finished, frame.stats.frame_ms);
             if let Some(fps) = self.settings.target_fps {
@@ -260,9 +275,12 @@ impl Session {
             self.stats = frame.stats.clone();
             self.stats.stages_ms.present = present;
         }
-        self.traced = Some((frame.job.clone(), frame.samples));
+        let before = self.traced.replace((frame.job.clone(), frame.samples));
+        if frame.job.aspect.is_exact {
+            self.methods.leave(before);
+        }
         if let Some(missed) = self.fresh.replace(frame) {
-            self.tracer.recycle(missed.film);
+            missed.into_films().for_each(|film| self.tracer.recycle(film));
         }
         self.picture.demand(now, self.rates.display);
         if self.shown.overlay {
@@ -311,16 +329,19 @@ impl Session {
         if width == 0 || height == 0 {
             return None;
         }
+        self.hold_exact(now);
         let camera = self.walker.camera();
         if self.stands.0 != camera {
             self.stands = (camera, Some(now));
         }
         let stops =
             self.stands.1.map(|since| since + REST).filter(|&at| at > now && self.settings.target_fps.is_some());
-        let lowering = self.steering.lowering(stops.is_some());
-        let settings = lowered(&self.settings, lowering);
+        // What is exact gives nothing up.
+        let is_exact = self.methods.wants_exact;
+        let lowering = if is_exact { Lowering::NONE } else { self.steering.lowering(stops.is_some()) };
+        let (settings, aspect) = self.methods.ask(lowered(&self.settings, lowering));
         let (width, height) = (lowering.scaled(width), lowering.scaled(height));
-        let job = Job { camera, settings, width, height, lowering };
+        let job = Job { camera, settings, width, height, lowering, aspect };
         if self.posted.as_ref() != Some(&job) {
             self.posted = Some(job.clone());
             self.tracer.post(job);
@@ -331,6 +352,8 @@ impl Session {
     /// What the picture is.
     fn showing(&self) -> Showing {
         match &self.traced {
+            Some((job, samples)) if job.aspect.is_exact => Showing::Exact(*samples),
+            _ if self.methods.wants_exact => Showing::ExactSoon,
             Some((_, Some(samples))) => Showing::Refined(*samples),
             Some((Job { lowering, .. }, None)) if lowering.level > 0 => {
                 Showing::Moving { preset: lowering.preset, scale: lowering.scale }
@@ -346,11 +369,7 @@ impl Session {
 
     fn draw(&mut self, now: Instant) -> Result<(), AppError> {
         self.redraw_requested = false;
-        if let Some(TracedFrame { film, .. }) = self.fresh.take()
-            && let Some(shown) = self.presenter.set_frame(&self.gpu, film)
-        {
-            self.tracer.recycle(shown);
-        }
+        self.show_frame();
         if self.figures.is_due(now) {
             self.paint_overlay(now);
         }
@@ -370,7 +389,7 @@ impl Session {
         let resting = self.history.is_resting(now) && !self.tracer.is_busy();
         let view = View {
             scene: &self.scene,
-            settings: &self.settings,
+            settings: self.methods.edited(&self.settings),
             stats: &self.stats,
             history: &self.history,
             resting,
@@ -380,6 +399,8 @@ impl Session {
             fov: self.walker.fov(),
             sensitivity: self.walker.sensitivity,
             invert_look: self.walker.invert_look,
+            methods: &self.methods,
+            left: &self.settings,
             tuning: Tuning {
                 bound: self.bound,
                 survey: self.survey.as_ref(),
@@ -413,6 +434,7 @@ impl Session {
 
     fn apply(&mut self, change: Change) {
         match change {
+            Change::Settings(settings) if self.methods.edits_right() => self.methods.split.right = settings,
             Change::Settings(settings) => {
                 let shown_otherwise = settings.present != self.settings.present;
                 self.steering = Steering::new(presets_below(&settings));
@@ -439,8 +461,65 @@ impl Session {
                     survey.end.get_or_insert(End::Stopped);
                 }
             }
+            Change::Methods(change) => self.change_methods(change),
             Change::TogglePanel => self.shown = self.shown.with_panel_toggled(),
         }
+    }
+
+    /// Hands the newest frame to the presenter, or the films of two sides joined anew.
+    fn show_frame(&mut self) {
+        let Self { methods, presenter, gpu, tracer, .. } = self;
+        let mut present = |film| presenter.set_frame(gpu, film);
+        let mut recycle = |film| tracer.recycle(film);
+        if let Some(frame) = self.fresh.take() {
+            methods.display(frame, &mut present, &mut recycle);
+        } else if methods.split.is_outdated() && !methods.wants_exact {
+            methods.split.present(&mut present, &mut recycle);
+        }
+    }
+
+    /// Notes whether the key for the exact picture is down; once it is up, goes back to what was there before.
+    fn hold_exact(&mut self, now: Instant) {
+        let wants = self.keys.is_held(Hold::Exact);
+        if self.methods.wants_exact == wants {
+            return;
+        }
+        self.methods.wants_exact = wants;
+        self.repaint(now);
+        if wants {
+            return;
+        }
+        if let Some(late) = self.fresh.take_if(|frame| frame.job.aspect.is_exact) {
+            late.into_films().for_each(|film| self.tracer.recycle(film));
+        }
+        let (film, what) = self.methods.go_back(&self.walker.camera());
+        if let Some(exact) = film.and_then(|film| self.presenter.set_frame(&self.gpu, film)) {
+            self.tracer.recycle(exact);
+        }
+        self.traced = what.or(self.traced.take());
+        self.picture.demand(now, self.rates.display);
+    }
+
+    fn change_methods(&mut self, change: methods::Change) {
+        self.methods.apply(&change, &self.settings);
+        match change {
+            methods::Change::MeasureErrors => self.examine(Subject::Errors),
+            methods::Change::MeasureCosts => self.examine(Subject::Costs),
+            methods::Change::Stop => self.tracer.stop_search(),
+            _ => self.picture.demand(Instant::now(), self.rates.display),
+        }
+    }
+
+    /// Starts an exam of the settings on what is seen from here.
+    fn examine(&mut self, subject: Subject) {
+        let size = picture_size(self.gpu.size());
+        if size.0 == 0 || size.1 == 0 {
+            return;
+        }
+        let settings = self.methods.edited(&self.settings).clone();
+        let exam = Exam::new(subject, self.walker.camera(), settings, size).with_answers_of(self.methods.exam.as_ref());
+        self.methods.exam = Some(exam.clone());
+        self.tracer.examine(exam);
     }
 
     /// Starts a search on what is seen from here.
@@ -480,7 +559,7 @@ impl Session {
     fn replace_presenter(&mut self, now: Instant) {
         self.presenter = Presenter::new(&self.gpu, self.settings.present);
         self.layer = Layer::new(&self.gpu, &self.window);
-        self.posted = None;
+        (self.posted, self.traced) = (None, None);
         self.repaint(now);
     }
 }

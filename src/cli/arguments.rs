@@ -63,7 +63,10 @@ fn render() -> Command {
                 .value_name("MAP")
                 .value_parser(Map::ALL.map(Map::name))
                 .help("Write what a method does instead of the picture; not as .exr")
-                .long_help(format!("Write what a method does instead of the picture; not as .exr\n{}", maps.join("\n"))),
+                .long_help(format!(
+                    "Write what a method does instead of the picture; not as .exr\n{}",
+                    maps.join("\n")
+                )),
         );
     with_shared(command)
 }

@@ -64,7 +64,9 @@ pub fn check_planes(output: Option<&Path>, planes: Planes) -> Result<(), Failure
 /// Refuses a map for a file that keeps linear colour.
 pub fn check_map(output: Option<&Path>, map: Map) -> Result<(), Failure> {
     if map != Map::Picture && output.map(Format::of).transpose()?.is_some_and(Format::keeps_planes) {
-        return Err(Failure::Usage("--map paints 8-bit pictures, such as .png; the planes themselves are --aov".to_owned()));
+        return Err(Failure::Usage(
+            "--map paints 8-bit pictures, such as .png; the planes themselves are --aov".to_owned(),
+        ));
     }
     Ok(())
 }

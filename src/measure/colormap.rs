@@ -24,7 +24,8 @@ mod tests {
 
     #[test]
     fn it_grows_lighter_from_dark_violet_to_yellow() {
-        let lightness = |t: f64| viridis(t).map(f64::from).iter().zip([0.21, 0.72, 0.07]).map(|(c, w)| c * w).sum::<f64>();
+        let lightness =
+            |t: f64| viridis(t).map(f64::from).iter().zip([0.21, 0.72, 0.07]).map(|(c, w)| c * w).sum::<f64>();
         assert!((0..20).all(|i| lightness(f64::from(i) / 20.0) < lightness(f64::from(i + 1) / 20.0)));
         assert!(viridis(0.0)[1] < 10 && viridis(1.0)[0] > 240);
     }

@@ -10,8 +10,7 @@ use raywalk::settings::{Fill, Settings, Supersample, Visibility};
 
 /// Several tiles, the last ones cut off.
 const SIZE: (u32, u32) = (150, 83);
-const SEEN: Planes =
-    Planes { depth: true, normal: true, object: true, primitive: true, decision: false, cost: false };
+const SEEN: Planes = Planes { depth: true, normal: true, object: true, primitive: true, decision: false, cost: false };
 
 fn scenes() -> Vec<Scene> {
     let wanted = ["crowd", "water", "heap", "only a headlight"];

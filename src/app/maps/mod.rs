@@ -54,8 +54,12 @@ impl Map {
     pub fn help(self) -> &'static str {
         match self {
             Self::Picture => "the picture itself",
-            Self::Decisions => "how each pixel was obtained, by the ray through its centre; of a grid of rays, by the last",
-            Self::Cost => "rays traced for each pixel, of all kinds; not the candidates it was tested against without one",
+            Self::Decisions => {
+                "how each pixel was obtained, by the ray through its centre; of a grid of rays, by the last"
+            }
+            Self::Cost => {
+                "rays traced for each pixel, of all kinds; not the candidates it was tested against without one"
+            }
             Self::Depth => "distance from the eye to what is seen, on a logarithmic scale",
             Self::Normals => "shading normals: red along x, green along y, blue along z",
             Self::Objects => "a colour for each object, dark where there is none",

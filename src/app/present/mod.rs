@@ -62,8 +62,8 @@ impl PaintJob {
 
 /// One of the two ways, set up.
 pub enum Presenter {
-    /// Textures joined by a shader.
-    Blit(Box<(Blit, GpuOverlay)>),
+    /// Textures joined by a shader, and the film that was uploaded.
+    Blit(Box<(Blit, GpuOverlay, Option<Film>)>),
     /// Memory joined by the CPU.
     Direct(Box<Direct>),
 }
@@ -80,15 +80,15 @@ impl Presenter {
             return Self::Direct(Box::new(direct));
         }
         let blit = Blit::new(&gpu.device, gpu.format());
-        Self::Blit(Box::new((blit, GpuOverlay::new(gpu))))
+        Self::Blit(Box::new((blit, GpuOverlay::new(gpu), None)))
     }
 
-    /// Shows `film` from the next drawing on. Returns a film that is not needed any more.
+    /// Shows `film` from the next drawing on. Returns the one that was shown until then.
     pub fn set_frame(&mut self, gpu: &Gpu, film: Film) -> Option<Film> {
         match self {
             Self::Blit(both) => {
                 both.0.upload(&gpu.device, &gpu.queue, film.width(), film.height(), film.rgba());
-                Some(film)
+                both.2.replace(film)
             }
             Self::Direct(direct) => direct.set_frame(film),
         }
@@ -98,7 +98,7 @@ impl Presenter {
     pub fn set_overlay(&mut self, gpu: &Gpu, job: &PaintJob, mut textures: egui::TexturesDelta) {
         match self {
             Self::Blit(both) => {
-                let (blit, overlay) = both.as_mut();
+                let (blit, overlay, _) = both.as_mut();
                 overlay.paint(gpu, blit, job, &mut textures);
             }
             Self::Direct(direct) => direct.set_overlay(job, &mut textures),
@@ -109,7 +109,7 @@ impl Presenter {
     pub fn show(&mut self, gpu: &Gpu, target: wgpu::SurfaceTexture) {
         match self {
             Self::Blit(both) => {
-                let (blit, overlay) = both.as_ref();
+                let (blit, overlay, _) = both.as_ref();
                 let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
                 blit.draw(&mut encoder, &target.texture, overlay.picture(gpu.size()));
                 gpu.present(Some(encoder.finish()), target);
