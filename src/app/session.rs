@@ -387,6 +387,8 @@ impl Session {
 
     fn paint_overlay(&mut self, now: Instant) {
         let resting = self.history.is_resting(now) && !self.tracer.is_busy();
+        let camera = self.walker.camera();
+        self.methods.is_elsewhere = self.methods.exam.as_ref().is_some_and(|exam| exam.camera != camera);
         let view = View {
             scene: &self.scene,
             settings: self.methods.edited(&self.settings),
@@ -405,7 +407,7 @@ impl Session {
                 bound: self.bound,
                 survey: self.survey.as_ref(),
                 drawn: self.traced.as_ref().map_or(&self.settings, |(job, _)| &job.settings),
-                is_elsewhere: self.survey.as_ref().is_some_and(|survey| survey.camera != self.walker.camera()),
+                is_elsewhere: self.survey.as_ref().is_some_and(|survey| survey.camera != camera),
             },
         };
         let mut changes = Vec::new();
@@ -520,6 +522,9 @@ impl Session {
         let exam = Exam::new(subject, self.walker.camera(), settings, size).with_answers_of(self.methods.exam.as_ref());
         self.methods.exam = Some(exam.clone());
         self.tracer.examine(exam);
+        if let Some(survey) = &mut self.survey {
+            survey.end.get_or_insert(End::Stopped);
+        }
     }
 
     /// Starts a search on what is seen from here.
@@ -542,6 +547,7 @@ impl Session {
         let survey = Survey::new(camera, bound);
         self.survey = Some(survey.clone());
         self.tracer.search(task, survey);
+        self.methods.end_exam();
     }
 
     /// Starts over on a new device, unless the old one did not even last.

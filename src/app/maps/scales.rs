@@ -29,31 +29,32 @@ fn range(mut numbers: Vec<f32>) -> Option<(f64, f64)> {
     Some((f64::from(least), f64::from(*most)))
 }
 
-/// Paints the rays of each pixel, from none to what nearly all stay within.
+/// Paints the rays of each pixel, from none to what nearly all stay within, on a scale that tells few from fewer.
 pub fn cost(films: &mut [&mut Film]) -> Key {
     let (_, most) = range(numbers(films, |film, x, y| film.cost(x, y).map(|rays| rays as f32))).unwrap_or_default();
     let most = most.max(1.0);
+    let span = libm::log(1.0 + most);
     let mut sums = Vec::new();
     for film in films {
         let mut sum = 0_u64;
         film.paint(|film, x, y, before| match film.cost(x, y) {
             Some(rays) => {
                 sum += u64::from(rays);
-                viridis((f64::from(rays) / most).min(1.0))
+                viridis((libm::log(1.0 + f64::from(rays)) / span).min(1.0))
             }
             None => before,
         });
         let pixels = f64::from(film.width()) * f64::from(film.height());
         sums.push(format!("{:.2} a pixel", sum as f64 / pixels));
     }
-    let marks = MARKS.map(|place| (place, mark(place * most, place)));
+    let marks = MARKS.map(|place| (place, mark(libm::exp(place * span) - 1.0, place)));
     Key::Scale(Scale { marks: marks.into(), unit: "rays", sums })
 }
 
 /// The number at a place of a scale whose end stands for what is beyond it, too.
 fn mark(number: f64, place: f64) -> String {
     let more = if place == 1.0 { "+" } else { "" };
-    format!("{}{more}", short((number * 100.0).round() / 100.0))
+    format!("{}{more}", short((number * 10.0).round() / 10.0))
 }
 
 /// Paints distances, on a logarithmic scale.

@@ -47,6 +47,8 @@ pub struct Methods {
     pub legend: Option<Legend>,
     /// What was measured last.
     pub exam: Option<Exam>,
+    /// That was measured from elsewhere.
+    pub is_elsewhere: bool,
     /// What was on display before the exact picture.
     kept: Kept,
 }
@@ -81,6 +83,7 @@ impl Methods {
             split: Split::new(settings.without_approximations()),
             legend: None,
             exam: None,
+            is_elsewhere: false,
             kept: Kept::default(),
         }
     }
@@ -93,7 +96,8 @@ impl Methods {
             Change::Divider(share) => self.split.move_to(*share),
             Change::Edit(side) => self.split.edited = *side,
             Change::CopyLeft => self.split.right = settings.clone(),
-            Change::MeasureErrors | Change::MeasureCosts | Change::Stop => {}
+            Change::Stop => self.end_exam(),
+            Change::MeasureErrors | Change::MeasureCosts => {}
         }
     }
 
@@ -170,6 +174,13 @@ impl Methods {
         exam.costs.iter().find(|cost| is_same && cost.row == row)
     }
 
+    /// No more is to be heard of the exam under way.
+    pub fn end_exam(&mut self) {
+        if let Some(exam) = &mut self.exam {
+            exam.has_ended = true;
+        }
+    }
+
     /// Whether an exam is under way.
     pub fn is_measuring(&self) -> bool {
         self.exam.as_ref().is_some_and(|exam| !exam.has_ended)
@@ -221,6 +232,8 @@ mod tests {
         methods.apply(&Change::Edit(Side::Right), &window());
         assert_eq!(methods.edited(&window()), &window(), "there is one side only");
         methods.apply(&Change::Split(true), &window());
+        assert!(!methods.edits_right(), "the left one at first");
+        methods.apply(&Change::Edit(Side::Right), &window());
         assert!(methods.edits_right() && methods.edited(&window()) == &methods.split.right);
         methods.apply(&Change::CopyLeft, &window());
         assert_eq!(methods.split.right, window());

@@ -1,7 +1,8 @@
 //! The divider between two settings side by side: a line to drag, with what each side is and how long its frame took.
 
-use super::{Change, View};
+use super::{Change, View, of_preset};
 use crate::app::methods;
+use crate::scene::Scene;
 use crate::settings::{PRESETS, Settings};
 use egui::{Align2, Color32, CursorIcon, FontId, Order, Rect, Sense, Stroke, Ui, pos2, vec2};
 
@@ -36,7 +37,7 @@ pub fn show(ui: &Ui, view: &View<'_>, available: Rect, changes: &mut Vec<Change>
             line(ui, grip, is_used);
         },
     );
-    let [left, right] = [view.left, &split.right].map(name);
+    let [left, right] = [view.left, &split.right].map(|settings| name(settings, view.scene));
     let [left_ms, right_ms] = split.milliseconds;
     let y = available.bottom() - GAP;
     words(ui, pos2(x - GAP, y), Align2::RIGHT_BOTTOM, &format!("{left} | {left_ms:.1} ms"));
@@ -66,8 +67,7 @@ fn words(ui: &Ui, at: egui::Pos2, align: Align2, text: &str) {
 }
 
 /// The preset that draws the same frames, or that there is none.
-fn name(settings: &Settings) -> &'static str {
-    let Settings { threads, simd, refine_at_rest, target_fps, present, .. } = *settings;
-    let of_machine = |preset: Settings| Settings { threads, simd, refine_at_rest, target_fps, present, ..preset };
-    PRESETS.iter().find(|p| of_machine((p.settings)()) == *settings).map_or("own settings", |preset| preset.name)
+fn name(settings: &Settings, scene: &Scene) -> &'static str {
+    let preset = PRESETS.iter().find(|preset| of_preset(preset, settings, scene) == *settings);
+    preset.map_or("own settings", |preset| preset.name)
 }

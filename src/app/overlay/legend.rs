@@ -8,19 +8,26 @@ use egui::{Align2, Color32, FontId, Grid, Mesh, Pos2, Rect, RichText, Sense, Sha
 /// Width and height of a scale's colours in points, and room below for its numbers.
 const BAR: [f32; 2] = [300.0, 14.0];
 const NUMBERS: f32 = 14.0;
+/// Room below for what the sides of a divider are, in points.
+const SIDES: f32 = 32.0;
 /// Steps of the colours of a scale.
 const STEPS: usize = 48;
 
 /// Draws the legend of the map on display, if it is one.
 pub fn show(ui: &Ui, view: &View<'_>, available: Rect) {
     let Some(legend) = &view.methods.legend else { return };
-    egui::Area::new(egui::Id::unique("legend"))
+    let room = if view.methods.split.is_on { SIDES } else { 0.0 };
+    // Each has a size of its own, by which its corner is placed.
+    egui::Area::new(egui::Id::unique(("legend", legend.map.name())))
         .pivot(Align2::RIGHT_BOTTOM)
-        .fixed_pos(available.max - vec2(MARGIN, MARGIN))
+        .fixed_pos(available.max - vec2(MARGIN, MARGIN + room))
         .interactable(false)
         .show(ui.ctx(), |ui| {
             let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(10.0).corner_radius(6.0);
-            frame.show(ui, |ui| contents(ui, legend));
+            frame.show(ui, |ui| {
+                ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+                contents(ui, legend);
+            });
         });
 }
 
@@ -41,6 +48,12 @@ fn contents(ui: &mut Ui, legend: &Legend) {
 
 fn classes(ui: &mut Ui, classes: &[Class]) {
     Grid::new("classes").spacing([10.0, 3.0]).show(ui, |ui| {
+        if classes.iter().any(|class| class.shares.len() > 1) {
+            for heading in ["", "", "left", "right"] {
+                ui.label(RichText::new(heading).small().color(theme::WEAK));
+            }
+            ui.end_row();
+        }
         for class in classes {
             let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), Sense::hover());
             let [r, g, b] = class.color;

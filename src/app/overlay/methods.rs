@@ -92,6 +92,9 @@ fn measure(ui: &mut Ui, view: &View<'_>, ask: &mut dyn FnMut(Change)) {
         });
     }
     let Some(exam) = &view.methods.exam else { return };
+    if view.methods.is_elsewhere {
+        ui.label(RichText::new("measured from another place").small().color(theme::WARNING));
+    }
     if exam.subject == Subject::Costs && exam.has_ended {
         let words = if exam.costs.is_empty() { "no costs measured" } else { "costs stand beside the settings" };
         ui.label(RichText::new(words).small().color(theme::WEAK));
@@ -121,6 +124,8 @@ fn words(metric: &str, score: Score) -> String {
     match (metric, score) {
         ("psnr", Score::Undefined) => "equal pictures".to_owned(),
         ("psnr", Score::Number(decibels)) => format!("{decibels:.2} dB"),
+        // What matters of it is how far it is from 1.
+        ("ssim", Score::Number(share)) => format!("{share:.6}"),
         (_, Score::Number(number)) => short((number * 1e6).round() / 1e6),
         (_, score) => score.to_string(),
     }

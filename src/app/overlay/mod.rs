@@ -266,7 +266,7 @@ fn presets(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Preset").color(theme::WEAK));
         for preset in PRESETS {
-            let settings = of_preset(preset, view);
+            let settings = of_preset(preset, view.settings, view.scene);
             let selected = *view.settings == settings;
             if ui.selectable_label(selected, preset.name).on_hover_text(preset.help).clicked() && !selected {
                 changes.push(Change::Settings(settings));
@@ -276,10 +276,10 @@ fn presets(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
 }
 
 /// The settings of a preset, as this scene is drawn by this machine in this window.
-fn of_preset(preset: &Preset, view: &View<'_>) -> Settings {
-    let Settings { threads, simd, refine_at_rest, target_fps, present, .. } = *view.settings;
+fn of_preset(preset: &Preset, current: &Settings, scene: &Scene) -> Settings {
+    let Settings { threads, simd, refine_at_rest, target_fps, present, .. } = *current;
     // The depth "scene" and the scene's own number are the same.
-    let depth = view.settings.depth.filter(|depth| *depth == view.scene.render.max_depth);
+    let depth = current.depth.filter(|depth| *depth == scene.render.max_depth);
     Settings { threads, simd, refine_at_rest, target_fps, present, depth, ..(preset.settings)() }
 }
 
