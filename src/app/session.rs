@@ -226,8 +226,8 @@ impl Session {
             Some(Command::TogglePanel) => self.shown = self.shown.with_panel_toggled(),
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
             Some(Command::Home) => self.walker.go_home(),
-            Some(Command::NextMap) => self.change_methods(methods::Change::Map(self.methods.map.next())),
-            Some(Command::ToggleSplit) => self.change_methods(methods::Change::Split(!self.methods.split.is_on)),
+            Some(Command::NextMap) => self.change_methods(&methods::Change::Map(self.methods.map.next())),
+            Some(Command::ToggleSplit) => self.change_methods(&methods::Change::Split(!self.methods.split.is_on)),
             Some(Command::Quit) | None => return false,
         }
         self.repaint(now);
@@ -339,7 +339,7 @@ impl Session {
         // What is exact gives nothing up.
         let is_exact = self.methods.wants_exact;
         let lowering = if is_exact { Lowering::NONE } else { self.steering.lowering(stops.is_some()) };
-        let (settings, aspect) = self.methods.ask(lowered(&self.settings, lowering));
+        let (settings, aspect) = self.methods.ask(&lowered(&self.settings, lowering));
         let (width, height) = (lowering.scaled(width), lowering.scaled(height));
         let job = Job { camera, settings, width, height, lowering, aspect };
         if self.posted.as_ref() != Some(&job) {
@@ -463,7 +463,7 @@ impl Session {
                     survey.end.get_or_insert(End::Stopped);
                 }
             }
-            Change::Methods(change) => self.change_methods(change),
+            Change::Methods(change) => self.change_methods(&change),
             Change::TogglePanel => self.shown = self.shown.with_panel_toggled(),
         }
     }
@@ -502,8 +502,8 @@ impl Session {
         self.picture.demand(now, self.rates.display);
     }
 
-    fn change_methods(&mut self, change: methods::Change) {
-        self.methods.apply(&change, &self.settings);
+    fn change_methods(&mut self, change: &methods::Change) {
+        self.methods.apply(change, &self.settings);
         match change {
             methods::Change::MeasureErrors => self.examine(Subject::Errors),
             methods::Change::MeasureCosts => self.examine(Subject::Costs),

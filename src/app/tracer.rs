@@ -304,6 +304,7 @@ impl<F: Fn(Word)> Drop for Parting<'_, F> {
 }
 
 /// What the thread does next.
+#[allow(clippy::large_enum_variant, reason = "there is one at a time, and a box would be an allocation a frame")]
 enum Task {
     /// A frame.
     Frame(Job),

@@ -134,10 +134,9 @@ fn decision(frame: &Frame<'_>, worker: &Worker, sample: usize) -> Decision {
         Visibility::Full => Decision::Traced,
         Visibility::Subsample if worker.cells.is_listed(sample) => Decision::Traced,
         Visibility::Subsample if settings.fill == Fill::Color => Decision::Interpolated,
-        Visibility::Subsample => Decision::Resolved,
         Visibility::Certified if in_cells(worker.lit_cells) => Decision::Interpolated,
         Visibility::Certified if in_cells(worker.traced_cells) => Decision::Traced,
         Visibility::Certified if in_cells(worker.certain_cells) => Decision::Certified,
-        Visibility::Certified => Decision::Resolved,
+        Visibility::Subsample | Visibility::Certified => Decision::Resolved,
     }
 }

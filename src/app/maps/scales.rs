@@ -116,7 +116,7 @@ pub fn error(films: &mut [&mut Film], exact: &Film) -> Key {
         sums.push(format!("max {most}, RMSE {:.2}", (squares as f64 / values).sqrt()));
     }
     let marks = [0, 1, 3, 7, 15, 31, 63, 127, 255].map(|steps| (place_of_error(f64::from(steps)), steps.to_string()));
-    Key::Scale(Scale { marks: marks.into(), unit: "of 255 off the exact picture", sums })
+    Key::Scale(Scale { marks: marks.into(), unit: "steps of 255 from the exact picture", sums })
 }
 
 #[cfg(test)]

@@ -102,7 +102,7 @@ impl Methods {
     }
 
     /// What a job for `settings` shows, and by which settings it is traced.
-    pub fn ask(&self, settings: Settings) -> (Settings, Aspect) {
+    pub fn ask(&self, settings: &Settings) -> (Settings, Aspect) {
         if self.wants_exact {
             let aspect = Aspect { is_exact: true, ..Aspect::default() };
             return (Settings { refine_at_rest: settings.refine_at_rest, ..settings.reference() }, aspect);
@@ -111,7 +111,7 @@ impl Methods {
         let aspect = Aspect { is_exact: false, map: self.map, beside };
         // What is refined is one picture, and no map of it.
         let refine_at_rest = settings.refine_at_rest && aspect.is_plain();
-        (Settings { refine_at_rest, ..settings }, aspect)
+        (Settings { refine_at_rest, ..settings.clone() }, aspect)
     }
 
     /// Whether a frame is what is asked for now: one of the exact picture may come late.
@@ -199,7 +199,7 @@ mod tests {
     #[test]
     fn a_plain_picture_is_traced_as_set() {
         let methods = Methods::new(&window());
-        assert_eq!(methods.ask(window()), (window(), Aspect::default()));
+        assert_eq!(methods.ask(&window()), (window(), Aspect::default()));
     }
 
     #[test]
@@ -207,7 +207,7 @@ mod tests {
         let mut methods = Methods::new(&window());
         (methods.map, methods.wants_exact) = (Map::Cost, true);
         methods.split.is_on = true;
-        let (settings, aspect) = methods.ask(window());
+        let (settings, aspect) = methods.ask(&window());
         assert_eq!(settings, Settings { refine_at_rest: true, ..window().reference() });
         assert_eq!(settings.visibility, Visibility::Full);
         assert_eq!(aspect, Aspect { is_exact: true, ..Aspect::default() });
@@ -217,10 +217,10 @@ mod tests {
     fn maps_and_two_sides_are_not_refined() {
         let mut methods = Methods::new(&window());
         methods.map = Map::Depth;
-        assert!(!methods.ask(window()).0.refine_at_rest);
+        assert!(!methods.ask(&window()).0.refine_at_rest);
         methods.map = Map::Picture;
         methods.apply(&Change::Split(true), &window());
-        let (settings, aspect) = methods.ask(window());
+        let (settings, aspect) = methods.ask(&window());
         let beside = aspect.beside.expect("two sides");
         assert!(!settings.refine_at_rest && !beside.refine_at_rest);
         assert_eq!(Settings { refine_at_rest: false, ..window().without_approximations() }, beside, "exact at first");
