@@ -18,14 +18,15 @@ pub fn command() -> Command {
         .version(crate_version!())
         .about(about)
         .after_help(
-            "Without a command: opens a window on SCENE, or on the built-in scene. With no display, renders one frame \
-             to raywalk.png in the current folder.\n\nExit codes: 0 done, 1 the input or the run failed, 2 wrong \
-             usage, 130 after Ctrl-C.",
+            "Without a command: opens a window on SCENE, or on the built-in scene. With no display, walks in the \
+             terminal; without a terminal, renders one frame to raywalk.png in the current folder.\n\nExit codes: 0 \
+             done, 1 the input or the run failed, 2 wrong usage, 130 after Ctrl-C.",
         )
         .args_conflicts_with_subcommands(true)
         .subcommand_precedence_over_arg(true)
         .max_term_width(120);
-    with_shared(view).subcommands([render(), bench(), tune(), info(), compare()])
+    let terminal = switch("terminal", "Walk in the terminal, not in a window: WASD, arrows, Q to quit");
+    with_shared(view.arg(terminal)).subcommands([render(), bench(), tune(), info(), compare()])
 }
 
 fn render() -> Command {
