@@ -12,8 +12,10 @@ use termina::{Event, EventReader, PlatformTerminal, Terminal};
 
 /// The second screen; no cursor; buttons, drags and the wheel; gain and loss of the focus.
 const TAKE: &str = "\x1b[?1049h\x1b[?25l\x1b[?1000h\x1b[?1002h\x1b[?1006h\x1b[?1004h";
-/// The same taken back, and what a frame may have left behind.
-const GIVE_BACK: &str = "\x1b[?2026l\x1b[m\x1b[?1004l\x1b[?1006l\x1b[?1002l\x1b[?1000l\x1b[?25h\x1b[?1049l";
+/// The same taken back, and what a frame may have left behind. Erased, because tmux mixes up the screens where the second
+/// has text in rows that the first did not have.
+const GIVE_BACK: &str =
+    "\x1b[?2026l\x1b[m\x1b[H\x1b[2J\x1b[?1004l\x1b[?1006l\x1b[?1002l\x1b[?1000l\x1b[?25h\x1b[?1049l";
 /// A colour that nobody would have chosen, to see whether the terminal knows it again.
 const ODD: [u8; 3] = [1, 2, 3];
 /// Answers are waited for this long.
