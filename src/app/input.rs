@@ -31,7 +31,7 @@ pub enum Hold {
 pub enum Command {
     /// Close the window.
     Quit,
-    /// Let the pointer go.
+    /// Let the pointer go, or else give up what is being loaded.
     ReleasePointer,
     /// Open or close the panel.
     TogglePanel,
@@ -39,6 +39,14 @@ pub enum Command {
     ToggleOverlay,
     /// Back to where the walk started.
     Home,
+    /// Choose a scene to open.
+    Open,
+    /// Load the scene once more.
+    Reload,
+    /// Tell of what is under the pointer.
+    Inspect,
+    /// Walk instead of flying, or the reverse.
+    ToggleWalking,
 }
 
 /// Keys that act while held. Codes name positions, so that WASD is the same block of keys on every layout.
@@ -63,19 +71,27 @@ pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::Tab, false, Command::TogglePanel),
     (KeyCode::KeyH, false, Command::ToggleOverlay),
     (KeyCode::Home, false, Command::Home),
+    (KeyCode::KeyO, true, Command::Open),
+    (KeyCode::F5, false, Command::Reload),
+    (KeyCode::KeyI, false, Command::Inspect),
+    (KeyCode::KeyG, false, Command::ToggleWalking),
 ];
 
 /// The help shown in the overlay: keys and what they do.
 pub const HELP: &[(&str, &str)] = &[
-    ("W A S D", "walk"),
-    ("Space, C", "up, down"),
+    ("W A S D", "move"),
+    ("Space, C", "up, down; walking, Space jumps"),
     ("Shift, Alt", "faster, slower"),
     ("Wheel", "change the speed"),
     ("Click", "look with the mouse"),
-    ("Esc", "let the mouse go"),
+    ("Esc", "let the mouse go; stop loading"),
+    ("G", "walk or fly"),
     ("Home", "back to the start"),
     ("F1, Tab", "this panel"),
     ("H", "hide everything"),
+    ("I, right click", "tell of the thing under the pointer"),
+    ("Ctrl+O", "open a scene; or drop one on the window"),
+    ("F5", "load the scene again"),
     ("Ctrl+Q", "quit"),
 ];
 

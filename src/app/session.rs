@@ -6,20 +6,24 @@ use super::error::AppError;
 use super::gpu::{Gpu, Target};
 use super::history::History;
 use super::input::{Command, Keys};
+use super::inspection::{self, Inspection};
 use super::layer::Layer;
+use super::lighting::Lighting;
 use super::lowering::{lowered, presets_below};
-use super::overlay::{self, Change, Showing, Shown, Tuning, View};
+use super::overlay::{self, Change, Notices, Showing, Shown, Tuning, View};
 use super::pacing::{Limiter, Rates};
 use super::present::Presenter;
+use super::scenes::{Arrival, News, Scenes, Wish};
 use super::steering::Steering;
 use super::survey::{self, End, Survey};
-use super::tracer::{Job, TracedFrame, Tracer, Word};
-use super::walker::{self, Walker};
-use super::{AppExit, AppOptions};
+use super::tracer::{Job, TracedFrame, Tracer};
+use super::viewer::Call;
+use super::walker::Walker;
+use super::{AppExit, AppOptions, Opening};
 use crate::measure::metric::{METRICS, metric};
 use crate::measure::tune::{Bound, Task};
 use crate::render::FrameStats;
-use crate::scene::{Camera, Scene};
+use crate::scene::{self, Camera, Scene};
 use crate::settings::Settings;
 use glam::DVec2;
 use std::sync::Arc;
@@ -39,6 +43,10 @@ const DEVICE_TRIAL: Duration = Duration::from_secs(10);
 const MAX_PIXELS: f64 = 7680.0 * 4320.0;
 /// A search tries no new settings after this time.
 const SEARCH_BUDGET: Duration = Duration::from_secs(30);
+/// Between two looks at how far a load has come.
+const TELL: Duration = Duration::from_millis(100);
+/// What is told where a walker does not fit.
+const NO_ROOM: &str = "There is no room to walk here: flying on";
 /// Pixels of smooth scrolling that count as one notch of a wheel.
 const PIXELS_PER_NOTCH: f64 = 40.0;
 
@@ -50,7 +58,12 @@ pub struct Session {
     gpu: Gpu,
     window: Arc<Window>,
     display: OwnedDisplayHandle,
+    scenes: Scenes,
+    /// The scene as it was loaded, and as it is lit.
     scene: Arc<Scene>,
+    lit: Arc<Scene>,
+    lighting: Lighting,
+    inspection: Option<Inspection>,
     settings: Settings,
     walker: Walker,
     keys: Keys,
@@ -60,6 +73,7 @@ pub struct Session {
     history: History,
     stats: FrameStats,
     shown: Shown,
+    notices: Notices,
     posted: Option<Job>,
     /// What the last frame shows, and with how many samples a pixel if it was refined.
     traced: Option<(Job, Option<u32>)>,
@@ -82,14 +96,29 @@ pub struct Session {
 }
 
 impl Session {
-    /// Opens the window and starts the tracer, which sends `word` of its frames.
+    /// Opens the window and starts the tracer. Other threads wake the event loop by `call`.
     pub fn open(
         event_loop: &ActiveEventLoop,
         options: &AppOptions,
-        word: impl Fn(Word) + Send + 'static,
+        call: Arc<dyn Fn(Call) + Send + Sync>,
     ) -> Result<Self, AppError> {
+        let wake = Arc::clone(&call);
+        let mut scenes =
+            Scenes::new(options.load.clone(), options.recent.clone(), Arc::new(move || wake(Call::Scenes)));
+        let (scene, camera) = match &options.opening {
+            Opening::Scene(arrival) => {
+                scenes.show(arrival);
+                (Arc::clone(&arrival.scene), arrival.camera)
+            }
+            Opening::Loading(load, file) => {
+                scenes.expect(load.clone(), file.clone());
+                let nothing = scene::nothing().map_err(|error| AppError::NoScene(error.into()))?;
+                let camera = nothing.cameras[0].camera;
+                (Arc::new(nothing), camera)
+            }
+        };
         let attributes = Window::default_attributes()
-            .with_title(format!("raywalk - {}", options.scene.name))
+            .with_title(title(&scene))
             .with_inner_size(PhysicalSize::new(options.size.0, options.size.1));
         let window = event_loop.create_window(attributes).map_err(|error| AppError::NoDisplay(error.to_string()))?;
         let window = Arc::new(window);
@@ -97,30 +126,34 @@ impl Session {
         let gpu = Gpu::new(&window, &display).map_err(AppError::NoDisplay)?;
         let millihertz = window.current_monitor().and_then(|monitor| monitor.refresh_rate_millihertz());
         let rates = Rates::new(millihertz, gpu.is_software);
-        let bounds = options.scene.objects.iter().map(|object| object.bounds);
         let now = Instant::now();
         let mut session = Self {
-            tracer: Tracer::start(options.scene.clone(), rates.display, word)?,
+            tracer: Tracer::start(rates.display, move |word| call(Call::Traced(word)))?,
             layer: Layer::new(&gpu, &window),
             presenter: Presenter::new(&gpu, options.settings.present),
             gpu,
             window,
             display,
-            scene: options.scene.clone(),
             settings: options.settings.clone(),
-            walker: Walker::new(options.camera, walker::surroundings(bounds, options.camera.eye)),
+            walker: Walker::in_scene(&scene, camera),
+            scenes,
+            lighting: Lighting::of(&scene),
+            lit: Arc::clone(&scene),
+            scene,
+            inspection: None,
             keys: Keys::default(),
             capture: Capture::default(),
             pointer: DVec2::ZERO,
             history: History::default(),
             stats: FrameStats::default(),
             shown: Shown::default(),
+            notices: Notices::default(),
             posted: None,
             traced: None,
             steering: Steering::new(presets_below(&options.settings)),
             bound: overlay::usual_bound(metric("flip").unwrap_or(&METRICS[0])),
             survey: None,
-            stands: (options.camera, None),
+            stands: (camera, None),
             fresh: None,
             rates,
             picture: Limiter::default(),
@@ -136,7 +169,7 @@ impl Session {
 
     /// Ends the session and says where it stood.
     pub fn close(self) -> AppExit {
-        AppExit { camera: self.walker.camera(), settings: self.settings.clone() }
+        AppExit { camera: self.walker.camera(), settings: self.settings.clone(), recent: self.scenes.recent().clone() }
     }
 
     /// Passes an event to whom it concerns; true to close the window.
@@ -158,6 +191,13 @@ impl Session {
             WindowEvent::MouseInput { state, button: MouseButton::Left, .. } if self.on_button(*state) => {
                 return Ok(false);
             }
+            WindowEvent::MouseInput { state: ElementState::Pressed, button: MouseButton::Right, .. }
+                if self.capture.is_active() || !self.layer.takes_click() =>
+            {
+                self.inspect();
+                self.repaint(now);
+                return Ok(false);
+            }
             WindowEvent::MouseWheel { delta, .. } if self.capture.is_active() || !self.layer.is_under_pointer() => {
                 self.walker.scroll(notches(*delta));
                 self.repaint(now);
@@ -174,6 +214,11 @@ impl Session {
                 self.repaint(now);
             }
             WindowEvent::Occluded(occluded) => self.occluded = *occluded,
+            WindowEvent::DroppedFile(path) => self.scenes.drop_in(path.clone()),
+            WindowEvent::HoveredFile(_) | WindowEvent::HoveredFileCancelled => {
+                self.scenes.hover(matches!(event, WindowEvent::HoveredFile(_)));
+                self.repaint(now);
+            }
             _ => {}
         }
         let of_the_mouse = matches!(
@@ -218,14 +263,33 @@ impl Session {
             return false;
         }
         match command {
-            Some(Command::ReleasePointer) => self.capture.release(&WindowHost(&self.window)),
+            Some(Command::ReleasePointer) if self.capture.is_active() => {
+                self.capture.release(&WindowHost(&self.window));
+            }
+            Some(Command::ReleasePointer) => self.wish(Wish::Cancel),
+            Some(Command::Open) => self.wish(Wish::Open),
+            Some(Command::Reload) => self.wish(Wish::Reload),
+            Some(Command::Inspect) => self.inspect(),
             Some(Command::TogglePanel) => self.shown = self.shown.with_panel_toggled(),
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
             Some(Command::Home) => self.walker.go_home(),
+            Some(Command::ToggleWalking) => self.toggle_walking(now),
             Some(Command::Quit) | None => return false,
         }
         self.repaint(now);
         false
+    }
+
+    /// Fly or walk. The speed that held keys had so far was that of the other.
+    fn toggle_walking(&mut self, now: Instant) {
+        if !self.walker.toggle_walking(&self.scene.geometry) {
+            self.notices.warn(now, NO_ROOM);
+        } else if self.walker.is_walking() {
+            self.notices.tell(now, "Walking: Space jumps, G flies");
+        } else {
+            self.notices.tell(now, "Flying: G walks");
+        }
+        self.step(now);
     }
 
     /// The left button; true when the picture took it.
@@ -270,9 +334,73 @@ impl Session {
         }
     }
 
+    /// Takes up what has become of scenes.
+    ///
+    /// # Errors
+    /// The first scene of all could not be loaded.
+    pub fn on_news(&mut self) -> Result<(), AppError> {
+        while let Some(news) = self.scenes.news() {
+            match news {
+                News::Opened(arrival) => self.enter(arrival),
+                News::Reloaded(arrival) => self.replace_scene(arrival.scene),
+                News::Nothing(failed) => return Err(AppError::NoScene(failed)),
+            }
+        }
+        self.repaint(Instant::now());
+        Ok(())
+    }
+
+    /// Goes to another scene.
+    fn enter(&mut self, Arrival { scene, camera, size, .. }: Arrival) {
+        self.walker.enter(&scene, camera);
+        self.lighting = Lighting::of(&scene);
+        if let Some((width, height)) = size {
+            // The window stays as it is where the system does not let it be resized.
+            let _ = self.window.request_inner_size(PhysicalSize::new(width, height));
+        }
+        self.show_scene(scene);
+    }
+
+    /// Shows what the scene has become, from where the walker stands.
+    fn replace_scene(&mut self, scene: Arc<Scene>) {
+        let home = self.walker.home();
+        let named = self.scene.cameras.iter().position(|named| named.camera == home);
+        if let Some(moved) = named.and_then(|index| scene.cameras.get(index)) {
+            self.walker.set_home(moved.camera);
+        }
+        self.lighting.keep_for(&scene);
+        self.show_scene(scene);
+    }
+
+    fn show_scene(&mut self, scene: Arc<Scene>) {
+        self.tracer.stop_search();
+        self.survey = None;
+        self.steering = Steering::new(presets_below(&self.settings));
+        self.window.set_title(&title(&scene));
+        self.inspection = None;
+        self.lit = self.lighting.lit(&scene);
+        self.scene = scene;
+    }
+
+    /// Tells of what the picture shows under the pointer, or in its middle while the pointer is captured.
+    fn inspect(&mut self) {
+        let Some((Job { scene, camera, width, height, .. }, _)) = &self.traced else { return };
+        let host = WindowHost(&self.window);
+        let place = if self.capture.is_active() { DVec2::splat(0.5) } else { self.pointer / host.size() };
+        self.inspection = inspection::inspect(scene, camera, (*width, *height), place);
+    }
+
+    /// Does what the user asks of scenes.
+    fn wish(&mut self, wish: Wish) {
+        self.scenes.grant(wish, &*self.window);
+    }
+
     /// Moves on, asks for frames and drawings as needed, and says when to be called again at the latest.
     pub fn tick(&mut self, now: Instant) -> Option<Instant> {
         self.step(now);
+        if self.scenes.open_dropped() {
+            self.repaint(now);
+        }
         let rest = self.post(now);
         let mut next = self.tracer.drop_outdated();
         let mut call_at = |at: Instant| next = Some(next.map_or(at, |next: Instant| next.min(at)));
@@ -298,10 +426,12 @@ impl Session {
     /// Walks up to `now`, as far as keys were held until here.
     fn step(&mut self, now: Instant) {
         let motion = self.keys.motion();
-        if let Some(before) = self.stepped {
-            self.walker.walk(motion, now.saturating_duration_since(before).as_secs_f64());
+        let passed = self.stepped.map_or(Duration::ZERO, |before| now.saturating_duration_since(before));
+        if !self.walker.advance(&self.scene.geometry, motion, passed.as_secs_f64()) {
+            self.notices.warn(now, NO_ROOM);
+            self.repaint(now);
         }
-        self.stepped = motion.is_moving().then_some(now);
+        self.stepped = (motion.is_moving() || self.walker.is_under_way()).then_some(now);
     }
 
     /// Asks for a frame when it would differ from the one last asked for. Says when motion will have stopped, if that
@@ -320,7 +450,8 @@ impl Session {
         let lowering = self.steering.lowering(stops.is_some());
         let settings = lowered(&self.settings, lowering);
         let (width, height) = (lowering.scaled(width), lowering.scaled(height));
-        let job = Job { camera, settings, width, height, lowering };
+        let scene = Arc::clone(&self.lit);
+        let job = Job { scene, camera, settings, width, height, lowering };
         if self.posted.as_ref() != Some(&job) {
             self.posted = Some(job.clone());
             self.tracer.post(job);
@@ -368,6 +499,7 @@ impl Session {
 
     fn paint_overlay(&mut self, now: Instant) {
         let resting = self.history.is_resting(now) && !self.tracer.is_busy();
+        self.notices.expire(now);
         let view = View {
             scene: &self.scene,
             settings: &self.settings,
@@ -376,6 +508,8 @@ impl Session {
             resting,
             size: self.traced.as_ref().map_or(picture_size(self.gpu.size()), |(job, _)| (job.width, job.height)),
             showing: self.showing(),
+            walking: self.walker.is_walking(),
+            eye_height: self.walker.eye_height(),
             speed: self.walker.speed(),
             fov: self.walker.fov(),
             sensitivity: self.walker.sensitivity,
@@ -386,6 +520,12 @@ impl Session {
                 drawn: self.traced.as_ref().map_or(&self.settings, |(job, _)| &job.settings),
                 is_elsewhere: self.survey.as_ref().is_some_and(|survey| survey.camera != self.walker.camera()),
             },
+            scenes: self.scenes.report(now),
+            lights: self.lighting.dials(),
+            inspection: self.inspection.as_ref(),
+            stands: self.traced.as_ref().map(|(job, _)| job.camera).filter(|camera| *camera == self.walker.camera()),
+            crosshair: self.capture.is_active(),
+            notices: self.notices.current(),
         };
         let mut changes = Vec::new();
         let shown = self.shown;
@@ -394,12 +534,16 @@ impl Session {
             changes.extend(overlay::show(ui, &view, shown));
         });
         self.figures.met(now);
+        self.notices.next_end().into_iter().for_each(|end| self.figures.demand_at(end));
         let Some(painting) = painting else { return };
         self.presenter.set_overlay(&self.gpu, &painting.job, painting.textures);
         if let Some(delay) = painting.again {
             // What egui wants redrawn by itself, such as a column that grew, is urgent only to someone pointing there.
             let interval = if self.layer.is_pointed_at() { self.rates.display } else { self.rates.figures };
             self.figures.demand(now + delay, interval);
+        }
+        if self.scenes.is_loading() {
+            self.figures.demand_at(now + TELL);
         }
         if shown.overlay && !resting {
             // The last frame may have been shown: look again, to say so.
@@ -428,6 +572,12 @@ impl Session {
             }
             Change::Home => self.walker.go_home(),
             Change::Speed(speed) => self.walker.set_speed(speed),
+            Change::Walking(_) => self.toggle_walking(Instant::now()),
+            Change::EyeHeight(height) => {
+                if !self.walker.set_eye_height(&self.scene.geometry, height) {
+                    self.notices.warn(Instant::now(), "There is no room for that eye height here");
+                }
+            }
             Change::Fov(fov) => self.walker.set_fov(fov),
             Change::Sensitivity(sensitivity) => self.walker.sensitivity = sensitivity,
             Change::InvertLook(invert) => self.walker.invert_look = invert,
@@ -440,6 +590,16 @@ impl Session {
                 }
             }
             Change::TogglePanel => self.shown = self.shown.with_panel_toggled(),
+            Change::Scenes(wish) => self.wish(wish),
+            Change::Light(light, dial) => {
+                self.lighting.turn(light, dial);
+                self.lit = self.lighting.lit(&self.scene);
+            }
+            Change::ResetLights => {
+                self.lighting.reset();
+                self.lit = self.lighting.lit(&self.scene);
+            }
+            Change::CloseInspection => self.inspection = None,
         }
     }
 
@@ -462,7 +622,7 @@ impl Session {
         };
         let survey = Survey::new(camera, bound);
         self.survey = Some(survey.clone());
-        self.tracer.search(task, survey);
+        self.tracer.search(Arc::clone(&self.lit), task, survey);
     }
 
     /// Starts over on a new device, unless the old one did not even last.
@@ -494,6 +654,10 @@ fn picture_size((width, height): (u32, u32)) -> (u32, u32) {
     let scale = (MAX_PIXELS / pixels).sqrt();
     let scaled = |side: u32| ((f64::from(side) * scale) as u32).max(1);
     (scaled(width), scaled(height))
+}
+
+fn title(scene: &Scene) -> String {
+    format!("raywalk - {}", scene.name)
 }
 
 fn notches(delta: MouseScrollDelta) -> f64 {

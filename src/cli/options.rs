@@ -6,7 +6,7 @@ use clap::ArgMatches;
 use glam::Vec3;
 use raywalk::picture::MAX_PIXELS;
 use raywalk::render::Planes;
-use raywalk::scene::Limits;
+use raywalk::scene::{Limits, Progress};
 use raywalk::settings::{PRESETS, ROWS, Settings, Visibility};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -19,6 +19,8 @@ pub struct Reading {
     pub limits: Limits,
     pub strict: bool,
     pub quiet: bool,
+    /// Is told how far that has come.
+    pub progress: Progress,
 }
 
 /// What of a camera the command line changes.
@@ -61,6 +63,7 @@ impl Reading {
             limits,
             strict: asked.get_flag("strict"),
             quiet: asked.get_flag("quiet"),
+            progress: Progress::default(),
         })
     }
 }

@@ -4,18 +4,22 @@ use super::frames::Frames;
 use super::interrupt::Interrupt;
 use super::options::Options;
 use super::output::{self, Output};
-use super::stage::Stage;
+use super::stage::{DEFAULT_SIZE, Loaded, Stage};
+use super::values::Size;
 use super::{Failure, render, stdout};
 use clap::ArgMatches;
-use raywalk::app::terminal::{self, End};
-use raywalk::app::{self, AppError, AppOptions};
+use raywalk::app::scenes::{Arrival, Failed, Load, Outcome, RecentFiles};
+use raywalk::app::{self, AppError, AppOptions, Opening, terminal};
 use raywalk::picture::WriteOptions;
-use raywalk::settings::{Settings, Supersample};
+use raywalk::scene::LoadOptions;
+use raywalk::settings::Settings;
 use std::path::Path;
-use std::sync::Arc;
+use std::time::Duration;
 
 /// What is written where no window can be opened.
 const PICTURE: &str = "raywalk.png";
+/// A scene that is loaded sooner needs no window to wait in.
+const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Opens the window, or else walks in the terminal, or else renders one frame.
 pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
@@ -32,56 +36,104 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     output::check_planes(Some(Path::new(PICTURE)), options.planes)?;
     let frames = Frames::of(&options)?;
     let interrupt = Interrupt::listen()?;
-    let stage = Stage::set(&options)?;
-    let window = AppOptions {
-        scene: Arc::clone(&stage.loaded.scene),
-        camera: frames.camera(frames.range.start, &stage.camera)?,
-        settings: stage.settings.clone(),
-        size: (stage.size.width, stage.size.height),
+    let load = load(&options)?;
+    let size = options.view.size.unwrap_or(DEFAULT_SIZE);
+    let file = options.reading.scene.clone().unwrap_or_default();
+    let (opening, size) = match load.wait(PATIENCE) {
+        Some(outcome) => {
+            let arrival = arrived(outcome)?;
+            let size = arrival.size.unwrap_or((size.width, size.height));
+            (Opening::Scene(arrival), size)
+        }
+        None => (Opening::Loading(load.clone(), file), (size.width, size.height)),
     };
-    let walked =
-        if in_terminal { walk_in_terminal(asked, window, &interrupt) } else { walk(asked, window, &interrupt) };
-    match walked {
-        Err(Failure::Window(AppError::NoDisplay(reason))) => {
+    let window = AppOptions {
+        opening: opening.clone(),
+        load: LoadOptions {
+            strict: options.reading.strict,
+            limits: options.reading.limits.clone(),
+            ..LoadOptions::default()
+        },
+        recent: RecentFiles::default(),
+        settings: options.settings.clone(),
+        size,
+    };
+    // No window wanted, or none to be had.
+    let reason = if in_terminal {
+        None
+    } else {
+        match app::run(window) {
+            Err(AppError::NoDisplay(reason)) => Some(reason),
+            Err(AppError::NoScene(failed)) => return Err(failure(failed)),
+            Err(error) => return Err(error.into()),
+            Ok(_) => {
+                tell_of_stats(&options);
+                return Ok(());
+            }
+        }
+    };
+    let arrival = match opening {
+        Opening::Scene(arrival) => arrival,
+        Opening::Loading(load, _) => arrived(load.wait_to_the_end())?,
+    };
+    match reason.filter(|_| !terminal::is_there()) {
+        None => {
+            super::terminal::walk(asked, &arrival, options.settings.clone(), &interrupt)?;
+            tell_of_stats(&options);
+            Ok(())
+        }
+        Some(reason) => {
             // A still picture has no hurry: it is what `render` makes of the same words.
             let options = Options::of(asked, Settings::exact)?;
-            picture(&stage.with_settings(&options.settings), &frames.first(), &options, &interrupt)?;
+            picture(&stage_of(arrival, &options), &frames.first(), &options, &interrupt)?;
             let reason = reason.trim_end_matches('.');
             stdout::note(&format!("no window ({reason}): rendered one frame to {PICTURE}"));
             Ok(())
         }
-        Err(failure) => Err(failure),
-        Ok(()) => {
-            if options.stats.is_some() && !options.reading.quiet {
-                stdout::note("warning: a walk has no --stats; raywalk render writes them");
-            }
-            Ok(())
-        }
     }
 }
 
-/// Walks in the window; with no display, in the terminal where there is one.
-fn walk(asked: &ArgMatches, options: AppOptions, interrupt: &Interrupt) -> Result<(), Failure> {
-    match app::run(options.clone()) {
-        Err(AppError::NoDisplay(_)) if terminal::is_there() => walk_in_terminal(asked, options, interrupt),
-        walked => walked.map(|_| ()).map_err(Failure::from),
+/// A walk has no figures of its run.
+fn tell_of_stats(options: &Options) {
+    if options.stats.is_some() && !options.reading.quiet {
+        stdout::note("warning: a walk has no --stats; raywalk render writes them");
     }
 }
 
-fn walk_in_terminal(asked: &ArgMatches, mut options: AppOptions, interrupt: &Interrupt) -> Result<(), Failure> {
-    // So few pixels can do with more rays each.
-    if asked.value_source("supersample").is_none() {
-        options.settings.supersample = Supersample::Grid { side: 2 };
-    }
-    // The walk listens itself, and gives the terminal back before it ends.
-    interrupt.careful();
-    let (_, end) = terminal::run(&options)?;
-    interrupt.check()?;
-    match end {
-        End::Quit => Ok(()),
-        End::Interrupted => Err(Failure::Interrupted),
-        End::Signal(number) => Err(Failure::Signal(number)),
-    }
+/// Starts to load what the window opens on.
+fn load(options: &Options) -> Result<Load, Failure> {
+    let (options, frames) = (options.clone(), Frames::of(options)?);
+    let progress = options.reading.progress.clone();
+    let files = progress.clone();
+    Ok(Load::start(progress, move || {
+        let stage = Stage::set(&options)?;
+        let Size { width, height } = stage.size;
+        Ok(Arrival {
+            camera: frames.camera(frames.range.start, &stage.camera)?,
+            scene: stage.loaded.scene,
+            file: options.reading.scene,
+            files: files.files(),
+            size: Some((width, height)),
+        })
+    }))
+}
+
+fn arrived(outcome: Outcome) -> Result<Arrival, Failure> {
+    outcome.map_err(failure)
+}
+
+/// What a load says that failed, with its exit code.
+fn failure(failed: Failed) -> Failure {
+    failed.downcast::<Failure>().map_or_else(|other| Failure::Run(other.to_string()), |failure| *failure)
+}
+
+/// What the window would have shown, to be rendered.
+fn stage_of(arrival: Arrival, options: &Options) -> Stage {
+    let (width, height) = arrival.size.unwrap_or((DEFAULT_SIZE.width, DEFAULT_SIZE.height));
+    let loaded = Loaded { scene: arrival.scene, total_ms: 0.0 };
+    let size = Size { width, height };
+    let stage = Stage { loaded, camera: arrival.camera, size, settings: Settings::default() };
+    stage.with_settings(&options.settings)
 }
 
 fn picture(stage: &Stage, frames: &Frames, options: &Options, interrupt: &Interrupt) -> Result<(), Failure> {

@@ -209,6 +209,61 @@ fn surfaces_lie_where_rays_hit_and_have_unit_normals() {
 }
 
 #[test]
+fn no_hit_is_nearer_than_the_nearest_point() {
+    let mut random = Random(SplitMix64(8));
+    for &kind in PrimitiveKind::ALL {
+        let mut count = 0;
+        for _ in 0..2000 {
+            let (center, size) = place(&mut random);
+            let thin = random.magnitude(-2.0, 0.0);
+            let geometry = geometry([shape(kind, &mut random, center, size, thin)]);
+            let rays = rays_around(&mut random, center, size, 8);
+            for (ray, (t, primitive)) in rays.iter().zip(hits(&geometry, &rays)) {
+                if primitive == NO_PRIMITIVE || f64::from(t) > 100.0 * (size + center.length()) {
+                    continue;
+                }
+                count += 1;
+                let origin = ray.origin.as_dvec3();
+                let rounding = 2e-5 * (origin.length() + center.length() + size + f64::from(t));
+                let nearest = geometry.nearest(origin, f64::INFINITY).expect("there is something");
+                let distance = nearest.distance(origin);
+                assert!(distance <= f64::from(t) + rounding, "{kind:?} {ray:?}: {distance} but hit at {t}");
+                assert_eq!(geometry.nearest(origin, distance * 0.999), None);
+                // It lies on the surface: nothing is nearer to it than itself.
+                let own = geometry.nearest(nearest, f64::INFINITY).expect("there is something");
+                assert!(own.distance(nearest) <= rounding, "{kind:?} {ray:?}: {nearest} is off the surface");
+                let hit = origin + ray.direction.as_dvec3() * f64::from(t);
+                let near_hit = geometry.nearest(hit, f64::INFINITY).expect("there is something");
+                assert!(near_hit.distance(hit) <= rounding, "{kind:?} {ray:?}: {near_hit} is not at {hit}");
+            }
+        }
+        assert!(count > 1000, "{kind:?}: only {count} rays hit");
+    }
+}
+
+#[test]
+fn the_tree_finds_the_same_nearest_point() {
+    let mut random = Random(SplitMix64(9));
+    for _ in 0..40 {
+        let shapes = (0..200).map(|i| {
+            let kind = PrimitiveKind::ALL[i % PrimitiveKind::ALL.len()];
+            let at = random.direction() * random.within(0.0, 8.0);
+            shape(kind, &mut random, at, 0.3, 0.5)
+        });
+        let mut with_tree = geometry(shapes.filter(|shape| !matches!(shape, Shape::Plane { .. })).collect::<Vec<_>>());
+        let points: Vec<DVec3> = (0..100).map(|_| random.direction() * random.within(0.0, 10.0)).collect();
+        let within = |i: usize| if i % 2 == 0 { f64::INFINITY } else { 0.5 };
+        let find = |geometry: &Geometry| -> Vec<Option<f64>> {
+            let found = points.iter().enumerate().map(|(i, &p)| Some(geometry.nearest(p, within(i))?.distance(p)));
+            found.collect()
+        };
+        let found = find(&with_tree);
+        assert!(with_tree.bvh.take().is_some());
+        assert_eq!(found, find(&with_tree));
+    }
+}
+
+#[test]
 fn every_path_gives_the_same_bits() {
     let mut random = Random(SplitMix64(3));
     for round in 0..40 {

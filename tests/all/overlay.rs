@@ -3,15 +3,20 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use raywalk::app::history::History;
-use raywalk::app::overlay::{self, Change, Showing, Shown, Tuning, View, theme};
+use raywalk::app::inspection::Inspection;
+use raywalk::app::lighting::Dial;
+use raywalk::app::overlay::{self, Change, Notices, Showing, Shown, Tuning, View, theme};
+use raywalk::app::scenes::{Failure, Loading, Report, Wish};
 use raywalk::app::survey::{End, Point, Survey};
-use raywalk::geometry::Geometry;
+use raywalk::geometry::{Aabb, Geometry};
 use raywalk::math::simd;
 use raywalk::measure::metric::{METRICS, metric};
 use raywalk::measure::tune::Bound;
 use raywalk::render::FrameStats;
+use raywalk::scene::progress::Step;
 use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene};
 use raywalk::settings::{Kind, PRESETS, ROWS, Settings, Supersample, row};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 fn scene() -> Scene {
@@ -20,9 +25,9 @@ fn scene() -> Scene {
         name: "room".to_owned(),
         format: "JSON",
         generation: 1,
-        geometry: Geometry::build(Vec::new()),
+        geometry: Arc::new(Geometry::build(Vec::new())),
         build_ms: 0.0,
-        objects: Vec::new(),
+        objects: Vec::new().into(),
         materials: vec![Material::default_phong()],
         textures: Vec::new(),
         lights: Vec::new(),
@@ -43,6 +48,10 @@ struct Panel {
     showing: Showing,
     bound: Bound,
     survey: Option<Survey>,
+    report: Report<'static>,
+    lights: Vec<Dial>,
+    inspection: Option<Inspection>,
+    notices: Notices,
     changes: Vec<Change>,
 }
 
@@ -52,7 +61,20 @@ impl Panel {
         let shown = Shown::default();
         let (history, showing) = (History::default(), Showing::AsSet);
         let bound = Bound::parse("flip=0.01").expect("right");
-        Self { scene: scene(), settings, history, shown, showing, bound, survey: None, changes: Vec::new() }
+        Self {
+            scene: scene(),
+            settings,
+            history,
+            shown,
+            showing,
+            bound,
+            survey: None,
+            report: Report::default(),
+            lights: Vec::new(),
+            inspection: None,
+            notices: Notices::default(),
+            changes: Vec::new(),
+        }
     }
 
     fn show(&mut self, ui: &mut egui::Ui) {
@@ -64,6 +86,8 @@ impl Panel {
             resting: false,
             size: (1280, 720),
             showing: self.showing,
+            walking: false,
+            eye_height: 1.6,
             speed: 1.5,
             fov: 60.0,
             sensitivity: 0.12,
@@ -74,6 +98,12 @@ impl Panel {
                 drawn: &self.settings,
                 is_elsewhere: false,
             },
+            scenes: self.report.clone(),
+            lights: &self.lights,
+            inspection: self.inspection.as_ref(),
+            stands: Some(Camera::default()),
+            crosshair: true,
+            notices: self.notices.current(),
         };
         let changes = overlay::show(ui, &view, self.shown);
         for change in &changes {
@@ -211,6 +241,19 @@ fn the_status_line_says_rate_time_and_size() {
 }
 
 #[test]
+fn notices_are_read_even_when_all_else_is_hidden() {
+    let mut panel = Panel::new();
+    panel.shown.overlay = false;
+    panel.notices.tell(Instant::now(), "camera copied");
+    panel.notices.warn(Instant::now(), "what was pasted is no camera: ".repeat(12));
+    let harness = panel.harness();
+    harness.get_by_label("camera copied");
+    let long = harness.get_by_label_contains("what was pasted").rect();
+    assert!(long.width() < 700.0 && long.height() > 30.0, "it breaks into lines: {long:?}");
+    assert!(long.bottom() < 1400.0);
+}
+
+#[test]
 fn what_the_picture_is_stands_below_the_status_line() {
     let sixteen = Settings { supersample: Supersample::Grid { side: 4 }, ..Settings::exact() };
     for (showing, settings, words) in [
@@ -332,4 +375,96 @@ fn a_front_without_a_find_says_so() {
     harness.state_mut().settings = Settings { stride: 2, ..Settings::balanced() };
     harness.run();
     harness.get_by_label("the settings on display are not measured");
+}
+
+/// What clicking on something asks for.
+fn wish(harness: &mut Harness<'_, Panel>, label: &str) -> Option<Wish> {
+    harness.get_by_label(label).click();
+    harness.run();
+    match harness.state_mut().changes.pop() {
+        Some(Change::Scenes(wish)) => Some(wish),
+        _ => None,
+    }
+}
+
+#[test]
+fn a_load_is_shown_and_can_be_stopped_even_where_the_overlay_is_hidden() {
+    let mut panel = Panel::new();
+    panel.shown.overlay = false;
+    let step = Step { what: "decoding textures".to_owned(), done: 3, of: 15 };
+    panel.report.loading = Some(Loading { name: "helmet.gltf".to_owned(), step, seconds: 2.0 });
+    let mut harness = panel.harness();
+    harness.run();
+    harness.get_by_label("Loading helmet.gltf");
+    harness.get_by_label("decoding textures: 3 of 15");
+    assert_eq!(wish(&mut harness, "Cancel"), Some(Wish::Cancel));
+}
+
+#[test]
+fn a_failure_says_where_and_stays_until_it_is_dismissed() {
+    let failure: &'static Failure = Box::leak(Box::new(Failure {
+        title: "room.json could not be opened".to_owned(),
+        message: "scenes/room.json:3:7 (/objects/0): missing radius".to_owned(),
+        file: Some("scenes/room.json".into()),
+    }));
+    let mut panel = Panel::new();
+    panel.report.failure = Some(failure);
+    let mut harness = panel.harness();
+    harness.run();
+    harness.get_by_label(&failure.title);
+    harness.get_by_label(&failure.message);
+    assert_eq!(wish(&mut harness, "Try again"), Some(Wish::OpenFile("scenes/room.json".into())));
+    assert_eq!(wish(&mut harness, "Dismiss"), Some(Wish::DismissFailure));
+}
+
+#[test]
+fn scenes_opened_before_are_opened_again() {
+    let recent: &'static [std::path::PathBuf] = Box::leak(Box::new(["/scenes/hall.glb".into(), "/b.obj".into()]));
+    let mut panel = Panel::new();
+    panel.report.recent = recent;
+    panel.report.blind = Some("too many watches");
+    let mut harness = panel.harness();
+    harness.get_by_label("Scene").click();
+    harness.run();
+    harness.get_by_label("changes on disk are not noticed: too many watches");
+    assert_eq!(wish(&mut harness, "hall.glb"), Some(Wish::OpenFile("/scenes/hall.glb".into())));
+    assert_eq!(wish(&mut harness, "Open..."), Some(Wish::Open));
+    assert_eq!(wish(&mut harness, "Reload"), Some(Wish::Reload));
+}
+
+#[test]
+fn lights_are_switched_one_by_one() {
+    let dial = |name: &str| Dial { name: name.to_owned(), on: true, intensity: 1.0, kelvin: 6500.0 };
+    let mut panel = Panel::new();
+    panel.lights = vec![dial("key"), Dial { intensity: 2.0, ..dial("fill") }];
+    let mut harness = panel.harness();
+    harness.get_by_label("Lights").click();
+    harness.run();
+    assert_eq!(harness.state().changes, [], "showing turns nothing");
+    harness.get_by_role_and_label(egui::accesskit::Role::CheckBox, "fill").click();
+    harness.run();
+    let off = Dial { on: false, intensity: 2.0, ..dial("fill") };
+    assert_eq!(harness.state_mut().changes.pop(), Some(Change::Light(1, off)));
+    harness.get_by_label("As in the file").click();
+    harness.run();
+    assert_eq!(harness.state_mut().changes.pop(), Some(Change::ResetLights));
+}
+
+#[test]
+fn a_thing_that_was_pointed_at_is_told_of() {
+    let mut panel = Panel::new();
+    panel.inspection = Some(Inspection {
+        title: "ball".to_owned(),
+        facts: vec![("distance", "4 m".to_owned()), ("material", "gold".to_owned())],
+        point: glam::Vec3::Z,
+        bounds: Aabb { min: glam::Vec3::NEG_ONE, max: glam::Vec3::ONE },
+    });
+    let mut harness = panel.harness();
+    harness.run();
+    for label in ["ball", "distance", "4 m", "gold"] {
+        harness.get_by_label(label);
+    }
+    harness.get_by_label("Close").click();
+    harness.run();
+    assert_eq!(harness.state_mut().changes.pop(), Some(Change::CloseInspection));
 }

@@ -1,7 +1,7 @@
 //! A control for every setting, made from the list of settings, and the controls of the view.
 
 use super::{Change, View, theme};
-use crate::app::walker::FOV_RANGE;
+use crate::app::walker::{EYE_HEIGHT_RANGE, FOV_RANGE};
 use crate::math::simd;
 use crate::settings::{Choice, Kind, ROWS, Row, Settings};
 use egui::{ComboBox, DragValue, Grid, Response, RichText, Slider, Ui};
@@ -116,6 +116,15 @@ pub fn view(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
         }
     });
     Grid::new("view").num_columns(2).spacing([8.0, 4.0]).show(ui, |ui| {
+        let mut walking = view.walking;
+        labelled(ui, "walk", "on your feet: floors, walls and stairs count (G)", |ui| ui.checkbox(&mut walking, ""))
+            .then(|| changes.push(Change::Walking(walking)));
+        let mut height = view.eye_height;
+        let drag = DragValue::new(&mut height).range(EYE_HEIGHT_RANGE).speed(view.eye_height * 0.01).suffix(" m");
+        labelled(ui, "eye height", "above the floor, in metres; steps and jumps grow with it", |ui| {
+            ui.add(drag.custom_formatter(|height, _| significant(height)))
+        })
+        .then(|| changes.push(Change::EyeHeight(height)));
         let mut speed = view.speed;
         let drag = DragValue::new(&mut speed).range(0.0..=f64::MAX).speed(view.speed * 0.01).suffix(" m/s");
         labelled(ui, "speed", "metres a second; the wheel changes it by a tenth", |ui| {

@@ -6,17 +6,25 @@
 mod controls;
 mod figures;
 mod graph;
+mod inspection;
+mod lights;
+pub mod notice;
+mod scenes;
 pub mod theme;
 mod tuning;
 
+pub use notice::{Notice, Notices};
 pub use tuning::{Tuning, usual_bound};
 
 use super::at_rest::SAMPLES;
 use super::history::History;
 use super::input::HELP;
+use super::inspection::Inspection;
+use super::lighting::Dial;
+use super::scenes::{Report, Wish};
 use crate::measure::tune::Bound;
 use crate::render::FrameStats;
-use crate::scene::Scene;
+use crate::scene::{Camera, Scene};
 use crate::settings::{PRESETS, Preset, Settings, row};
 use egui::{CollapsingHeader, RichText, Ui};
 
@@ -24,8 +32,6 @@ use egui::{CollapsingHeader, RichText, Ui};
 const WIDTH: f32 = 336.0;
 /// Distance from the window's edge in points.
 const MARGIN: f32 = 8.0;
-/// Most warnings of a scene that are listed.
-const WARNINGS: usize = 5;
 
 /// Everything the overlay shows.
 #[derive(Debug)]
@@ -44,7 +50,11 @@ pub struct View<'a> {
     pub size: (u32, u32),
     /// What the picture is.
     pub showing: Showing,
-    /// Walking speed in metres a second.
+    /// On foot and not flying.
+    pub walking: bool,
+    /// Height of the eye above the floor in metres, on foot.
+    pub eye_height: f64,
+    /// Speed in metres a second.
     pub speed: f64,
     /// Vertical field of view in degrees.
     pub fov: f32,
@@ -54,6 +64,18 @@ pub struct View<'a> {
     pub invert_look: bool,
     /// What is known of other settings.
     pub tuning: Tuning<'a>,
+    /// What there is to say of scenes.
+    pub scenes: Report<'a>,
+    /// How each light is turned.
+    pub lights: &'a [Dial],
+    /// What was pointed at.
+    pub inspection: Option<&'a Inspection>,
+    /// From where the picture is seen, unless that is changing.
+    pub stands: Option<Camera>,
+    /// Whether the pointer is captured, and what it points at is in the middle.
+    pub crosshair: bool,
+    /// What was just done or went wrong.
+    pub notices: &'a [Notice],
 }
 
 /// What the picture is, against what the settings ask for.
@@ -123,7 +145,11 @@ pub enum Change {
     Camera(usize),
     /// Go back to the start.
     Home,
-    /// Walk at this speed, metres a second.
+    /// Whether to walk; else fly.
+    Walking(bool),
+    /// Walk with the eye at this height, metres.
+    EyeHeight(f64),
+    /// Go at this speed, metres a second.
     Speed(f64),
     /// See this vertical field of view, degrees.
     Fov(f32),
@@ -139,14 +165,26 @@ pub enum Change {
     StopSearch,
     /// Open or close the panel.
     TogglePanel,
+    /// Something about scenes.
+    Scenes(Wish),
+    /// Turn the light of this index.
+    Light(usize, Dial),
+    /// Turn all lights back.
+    ResetLights,
+    /// Tell no longer of what was pointed at.
+    CloseInspection,
 }
 
 /// Draws the overlay and returns what was asked for, in order.
 pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
     let mut changes = Vec::new();
+    scenes::boxes(ui, view, &mut changes);
+    // They answer what was just asked for: whoever hides the rest wants to know all the same.
+    notice::show(ui, view.notices);
     if !shown.overlay {
         return changes;
     }
+    inspection::show(ui, view, &mut changes);
     let available = ui.ctx().content_rect();
     egui::Area::new(egui::Id::unique("overlay"))
         .fixed_pos(available.min + egui::vec2(MARGIN, MARGIN))
@@ -207,7 +245,8 @@ fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     section(ui, "Last frame", true, |ui| figures::show(ui, view.stats));
     section(ui, "View", true, |ui| controls::view(ui, view, changes));
     section(ui, "Time against error", false, |ui| tuning::show(ui, view, changes));
-    section(ui, "Scene", false, |ui| scene(ui, view.scene));
+    section(ui, "Lights", false, |ui| lights::show(ui, view, changes));
+    section(ui, "Scene", false, |ui| scenes::section(ui, view, changes));
     section(ui, "Keys", false, keys);
 }
 
@@ -234,19 +273,6 @@ fn of_preset(preset: &Preset, view: &View<'_>) -> Settings {
     // The depth "scene" and the scene's own number are the same.
     let depth = view.settings.depth.filter(|depth| *depth == view.scene.render.max_depth);
     Settings { threads, simd, refine_at_rest, target_fps, present, depth, ..(preset.settings)() }
-}
-
-fn scene(ui: &mut Ui, scene: &Scene) {
-    let count = |number: usize, one: &str, many: &str| format!("{number} {}", if number == 1 { one } else { many });
-    ui.label(RichText::new(&scene.name).color(theme::STRONG));
-    let lights = if scene.headlight { "headlight".to_owned() } else { count(scene.lights.len(), "light", "lights") };
-    ui.label(format!("{}, {lights}", count(scene.objects.len(), "object", "objects")));
-    for warning in scene.warnings.iter().take(WARNINGS) {
-        ui.label(RichText::new(warning.to_string()).color(theme::WARNING));
-    }
-    if scene.warnings.len() > WARNINGS {
-        ui.label(RichText::new(format!("and {} more", scene.warnings.len() - WARNINGS)).color(theme::WARNING));
-    }
 }
 
 fn keys(ui: &mut Ui) {

@@ -13,6 +13,8 @@ pub const WEAK: Color32 = Color32::from_rgb(150, 160, 178);
 pub const ACCENT: Color32 = Color32::from_rgb(94, 170, 255);
 /// Lines between things.
 pub const LINE: Color32 = Color32::from_rgb(52, 58, 70);
+/// Something went wrong.
+pub const FAILURE: Color32 = Color32::from_rgb(240, 120, 110);
 /// Something to mind.
 pub const WARNING: Color32 = Color32::from_rgb(240, 178, 84);
 

@@ -54,6 +54,8 @@ pub enum Command {
     Redraw,
     /// Back to where the walk started.
     Home,
+    /// Walk instead of flying, or the reverse.
+    ToggleWalking,
     /// So many notches faster.
     Speed(i8),
     /// The preset of this place in the list.
@@ -83,6 +85,7 @@ const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::Char('z'), true, Command::Suspend),
     (KeyCode::Char('l'), true, Command::Redraw),
     (KeyCode::Home, false, Command::Home),
+    (KeyCode::Char('g'), false, Command::ToggleWalking),
     (KeyCode::Char('+'), false, Command::Speed(2)),
     (KeyCode::Char('='), false, Command::Speed(2)),
     (KeyCode::Char('-'), false, Command::Speed(-2)),

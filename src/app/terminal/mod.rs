@@ -30,8 +30,11 @@ mod screen;
 mod session;
 mod signals;
 
-use super::{AppError, AppExit, AppOptions};
+use super::AppError;
+use crate::scene::{Camera, Scene};
+use crate::settings::Settings;
 use std::io::IsTerminal;
+use std::sync::Arc;
 
 /// What ended the walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,11 +53,11 @@ pub fn is_there() -> bool {
     std::io::stdin().is_terminal() && std::io::stdout().is_terminal() && !is_dumb
 }
 
-/// Walks until the user leaves. Of `options`, the size is not looked at: the terminal has its own.
+/// Walks through `scene` from `camera` until the user leaves, with `settings` at first.
 ///
 /// # Errors
 /// [`AppError::Terminal`] when the terminal refuses or goes away; [`AppError::TracerGone`] and [`AppError::NoThread`] as
 /// for a window. The terminal is given back as it was in any case.
-pub fn run(options: &AppOptions) -> Result<(AppExit, End), AppError> {
-    session::run(options)
+pub fn run(scene: &Arc<Scene>, camera: Camera, settings: Settings) -> Result<End, AppError> {
+    session::run(scene, camera, settings)
 }

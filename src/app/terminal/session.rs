@@ -12,13 +12,15 @@ use super::palette::Palette;
 use super::screen::Screen;
 use super::signals::{self, Watch};
 use super::status::Status;
+use crate::app::AppError;
 use crate::app::history::History;
 use crate::app::lowering::Lowering;
 use crate::app::tracer::{Job, TracedFrame, Tracer, Word};
-use crate::app::walker::{self, Walker};
-use crate::app::{AppError, AppExit, AppOptions};
+use crate::app::walker::Walker;
+use crate::scene::{Camera, Scene};
 use crate::settings::{PRESETS, Preset, Settings};
 use glam::DVec2;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 use termina::escape::csi::{Csi, Cursor};
@@ -54,7 +56,7 @@ enum Step {
 }
 
 /// See [`run`](super::run).
-pub fn run(options: &AppOptions) -> Result<(AppExit, End), AppError> {
+pub fn run(scene: &Arc<Scene>, camera: Camera, settings: Settings) -> Result<End, AppError> {
     let (sender, messages) = channel();
     // Dropped last, when the terminal is given back.
     let signals = sender.clone();
@@ -64,12 +66,11 @@ pub fn run(options: &AppOptions) -> Result<(AppExit, End), AppError> {
     let screen = Screen::take().map_err(AppError::Terminal)?;
     let _reading = Reading::start(screen.reader(), sender.clone()).map_err(AppError::NoThread)?;
     let word = move |word| sender.send(Message::Tracer(word)).unwrap_or(());
-    let tracer = Tracer::start(options.scene.clone(), INTERVAL, word)?;
-    let mut session = Session::new(options, screen, tracer);
+    let tracer = Tracer::start(INTERVAL, word)?;
+    let mut session = Session::new(scene, camera, settings, screen, tracer);
     let end = session.walk(&messages);
     session.settle(&messages);
-    let end = end?;
-    Ok((AppExit { camera: session.walker.camera(), settings: session.settings }, end))
+    end
 }
 
 /// Everything that lives as long as the walk. Dropped from the top: the tracer is joined before the terminal goes.
@@ -82,6 +83,7 @@ struct Session {
     keys: Keys,
     /// Columns and rows of the terminal.
     size: (u16, u16),
+    scene: Arc<Scene>,
     walker: Walker,
     settings: Settings,
     history: History,
@@ -99,9 +101,8 @@ struct Session {
 }
 
 impl Session {
-    fn new(options: &AppOptions, screen: Screen, tracer: Tracer) -> Self {
+    fn new(scene: &Arc<Scene>, camera: Camera, settings: Settings, screen: Screen, tracer: Tracer) -> Self {
         let abilities = screen.abilities();
-        let bounds = options.scene.objects.iter().map(|object| object.bounds);
         Self {
             tracer,
             palette: screen.palette(),
@@ -110,8 +111,9 @@ impl Session {
             keys: Keys::new(abilities.tells_releases),
             size: screen.size(),
             screen,
-            walker: Walker::new(options.camera, walker::surroundings(bounds, options.camera.eye)),
-            settings: options.settings.clone(),
+            scene: scene.clone(),
+            walker: Walker::in_scene(scene, camera),
+            settings,
             history: History::default(),
             posted: None,
             fresh: None,
@@ -192,6 +194,10 @@ impl Session {
             Command::Suspend => return Some(Step::Suspend),
             Command::Redraw => self.encoder.forget(),
             Command::Home => self.walker.go_home(),
+            Command::ToggleWalking => {
+                // Where there is no room it stays a flight, as the status line tells.
+                self.walker.toggle_walking(&self.scene.geometry);
+            }
             Command::Speed(notches) => self.walker.scroll(notches.into()),
             Command::Preset(place) => {
                 if let Some(preset) = PRESETS.get(place) {
@@ -230,12 +236,15 @@ impl Session {
     /// Walks and turns up to `now`, as far as keys were held until here.
     fn step(&mut self, now: Instant) {
         let wish = self.keys.wish(now);
-        if let (Some(before), Some(wish)) = (self.stepped, wish) {
+        if let Some(before) = self.stepped {
+            let wish = wish.unwrap_or_default();
             let seconds = now.saturating_duration_since(before).as_secs_f64().min(MAX_STEP_SECONDS);
-            self.walker.walk(wish.motion, seconds * wish.pace);
+            // Feet need all the time there is: to fall as well.
+            let pace = if self.walker.is_walking() { 1.0 } else { wish.pace };
+            self.walker.advance(&self.scene.geometry, wish.motion, seconds * pace);
             self.turn(wish.turn * seconds);
         }
-        self.stepped = wish.map(|_| now);
+        self.stepped = (wish.is_some() || self.walker.is_under_way()).then_some(now);
     }
 
     /// Moves on, asks for frames, shows what there is, and says when to be called again at the latest.
@@ -263,6 +272,7 @@ impl Session {
             return;
         }
         let job = Job {
+            scene: self.scene.clone(),
             camera: self.walker.camera(),
             settings: self.settings.clone(),
             width: columns.into(),
@@ -303,6 +313,7 @@ impl Session {
             size: (job.width, job.height),
             preset: preset_name(&self.settings),
             speed: self.walker.speed(),
+            walks: self.walker.is_walking(),
             samples: *samples,
         };
         let mut bytes = self.encoder.encode(cells.clone(), &status.line(self.size.0.into()), rows.into());

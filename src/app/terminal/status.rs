@@ -4,8 +4,15 @@ use crate::app::at_rest::SAMPLES;
 use std::fmt;
 
 /// The keys, as far as there is room for them.
-const KEYS: &[&str] =
-    &["Q: quit", "W A S D Space C: walk", "arrows: look", "+ -: speed", "1 2 3: preset", "Home: back"];
+const KEYS: &[&str] = &[
+    "Q: quit",
+    "W A S D Space C: move",
+    "arrows: look",
+    "+ -: speed",
+    "1 2 3: preset",
+    "G: walk or fly",
+    "Home: back",
+];
 /// Between two entries.
 const GAP: &str = "   ";
 
@@ -22,6 +29,8 @@ pub struct Status<'a> {
     pub preset: &'a str,
     /// Metres a second.
     pub speed: f64,
+    /// On foot, not flying.
+    pub walks: bool,
     /// Samples a pixel of a view at rest.
     pub samples: Option<u32>,
 }
@@ -52,10 +61,11 @@ impl fmt::Display for Status<'_> {
         let (width, height) = self.size;
         write!(f, "{GAP}{:.1} ms{GAP}{width}x{height}{GAP}{}{GAP}", self.frame_ms, self.preset)?;
         match self.speed {
-            speed if speed >= 10.0 => write!(f, "{speed:.0} m/s"),
-            speed if speed >= 0.1 => write!(f, "{speed:.1} m/s"),
-            speed => write!(f, "{speed:.1e} m/s"),
+            speed if speed >= 10.0 => write!(f, "{speed:.0} m/s")?,
+            speed if speed >= 0.1 => write!(f, "{speed:.1} m/s")?,
+            speed => write!(f, "{speed:.1e} m/s")?,
         }
+        f.write_str(if self.walks { " on foot" } else { "" })
     }
 }
 
@@ -63,8 +73,15 @@ impl fmt::Display for Status<'_> {
 mod tests {
     use super::*;
 
-    const STATUS: Status<'_> =
-        Status { rate: Some(29.6), frame_ms: 4.25, size: (80, 46), preset: "balanced", speed: 3.14, samples: None };
+    const STATUS: Status<'_> = Status {
+        rate: Some(29.6),
+        frame_ms: 4.25,
+        size: (80, 46),
+        preset: "balanced",
+        speed: 3.14,
+        walks: false,
+        samples: None,
+    };
 
     #[test]
     fn figures_come_first_and_keys_where_there_is_room() {

@@ -6,12 +6,12 @@
 //! beside them and its change with them, so that the quadratic's terms are no larger than the cone's radius: a flat
 //! cone's wall soon grows far beyond the cone, and along a needle most of the ray is far from the axis.
 
-use super::{Kernel, SurfacePoint, largest};
+use super::{Kernel, SurfacePoint, largest, vector};
 use crate::geometry::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// The cone kernel. Fields: middle of the axis x y z, unit axis x y z, half of the height, radius at the middle,
 /// growth of the radius per unit of height.
@@ -68,6 +68,20 @@ impl Kernel<9> for Cone {
         let [half_height, radius, slope] = [fields[6], fields[7], fields[8]];
         let end = |height: f32| Aabb::of_disk(middle + axis * height, axis, radius + slope * height);
         end(-half_height).union(end(half_height))
+    }
+
+    /// In the half-plane from the axis through the point, the wall is a segment.
+    fn nearest_to(fields: &[f32; 9], point: DVec3) -> DVec3 {
+        let (middle, axis) = (vector(fields, 0), vector(fields, 3));
+        let [half_height, radius, slope] = [fields[6], fields[7], fields[8]].map(f64::from);
+        let from_middle = point - middle;
+        let height = from_middle.dot(axis);
+        let across = from_middle - axis * height;
+        let outward = across.normalize_or(axis.any_orthonormal_vector());
+        // Along (1, slope) in height and distance from the axis, from the middle's (0, radius).
+        let along = (height + slope * (across.length() - radius)) / (1.0 + slope * slope);
+        let along = along.clamp(-half_height, half_height);
+        middle + axis * along + outward * (radius + slope * along).max(0.0)
     }
 
     #[inline(always)]

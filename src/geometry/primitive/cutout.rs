@@ -4,6 +4,7 @@ use super::{Kernel, SurfacePoint, Triangle};
 use crate::geometry::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
+use glam::DVec3;
 
 /// The kernel of triangles with holes. Fields: as of [`Triangle`].
 #[derive(Debug)]
@@ -15,6 +16,11 @@ impl Kernel<10> for Cutout {
 
     fn bounds(fields: &[f32; 10]) -> Aabb {
         Triangle::bounds(fields)
+    }
+
+    /// Of the whole triangle, holes and all.
+    fn nearest_to(fields: &[f32; 10], point: DVec3) -> DVec3 {
+        Triangle::nearest_to(fields, point)
     }
 
     #[inline(always)]

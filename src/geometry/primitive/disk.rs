@@ -1,10 +1,10 @@
 //! Disks: `{ "type": "disk", "center": [0,0,0], "normal": [0,1,0], "radius": 1 }`, and the caps of cylinders and cones.
 
-use super::{Kernel, SurfacePoint, largest};
+use super::{Kernel, SurfacePoint, largest, vector};
 use crate::geometry::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// The disk kernel. Fields: centre x y z, unit normal x y z, radius.
 #[derive(Debug)]
@@ -20,6 +20,13 @@ impl Disk {
 impl Kernel<7> for Disk {
     fn bounds(fields: &[f32; 7]) -> Aabb {
         Aabb::of_disk(Vec3::from_slice(&fields[0..3]), Vec3::from_slice(&fields[3..6]), fields[6])
+    }
+
+    fn nearest_to(fields: &[f32; 7], point: DVec3) -> DVec3 {
+        let (center, normal) = (vector(fields, 0), vector(fields, 3));
+        let from_center = point - center;
+        let in_plane = from_center - normal * normal.dot(from_center);
+        center + in_plane.clamp_length_max(f64::from(fields[6]))
     }
 
     #[inline(always)]

@@ -21,6 +21,7 @@ pub use triangle::Triangle;
 use super::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
+use glam::DVec3;
 
 /// Calls `$callback!` with every primitive type: its kernel, its field count, the name of its blocks in
 /// [`Geometry`](super::Geometry), and how many numbers its [`Outline`](super::beam::Outline) has. To add a primitive,
@@ -64,12 +65,20 @@ pub trait Kernel<const N: usize> {
     /// The least box around the primitive; infinite for planes.
     fn bounds(fields: &[f32; N]) -> Aabb;
 
+    /// The point of the primitive that is nearest to `point`; any of them where several are.
+    fn nearest_to(fields: &[f32; N], point: DVec3) -> DVec3;
+
     /// Distance to the first hit beyond `t_min` (exclusive), where the mask is set.
     /// Elsewhere the distance is meaningless. Distances may come out infinite: callers compare with a finite limit.
     fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; N], rays: &Rays<F>, t_min: F) -> (F::Mask, F);
 
     /// The surface at distance `t`, for a ray that [`intersect`](Self::intersect) found to hit there.
     fn surface<S: Simd, F: Lanes<S>>(fields: &[F; N], origin: V3<F>, direction: V3<F>, t: F) -> SurfacePoint<F>;
+}
+
+/// The vector in three fields from `first` on.
+pub(super) fn vector(fields: &[f32], first: usize) -> DVec3 {
+    DVec3::new(f64::from(fields[first]), f64::from(fields[first + 1]), f64::from(fields[first + 2]))
 }
 
 /// The larger magnitude of each pair of components, folded to one number.

@@ -1,10 +1,10 @@
 //! Infinite planes: `{ "type": "plane", "point": [0,-1,0], "normal": [0,1,0] }`.
 
-use super::{Kernel, SurfacePoint, largest};
+use super::{Kernel, SurfacePoint, largest, vector};
 use crate::geometry::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// The plane kernel. Fields: unit normal x y z, distance of the plane from the world's origin along it.
 #[derive(Debug)]
@@ -21,6 +21,11 @@ impl Plane {
 impl Kernel<4> for Plane {
     fn bounds(_: &[f32; 4]) -> Aabb {
         Aabb::INFINITE
+    }
+
+    fn nearest_to(fields: &[f32; 4], point: DVec3) -> DVec3 {
+        let normal = vector(fields, 0);
+        point + normal * (f64::from(fields[3]) - normal.dot(point))
     }
 
     #[inline(always)]

@@ -3,12 +3,12 @@
 //! The discriminant is r² - |l|², with l the vector from the centre to the ray's nearest point: unlike b² - c with
 //! c = |C-O|² - r², it does not cancel for small or distant spheres (Haines et al., Ray Tracing Gems ch. 7, 2019).
 
-use super::{Kernel, SurfacePoint, largest};
+use super::{Kernel, SurfacePoint, largest, vector};
 use crate::geometry::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// The sphere kernel. Fields: centre x y z, radius.
 #[derive(Debug)]
@@ -67,6 +67,11 @@ impl Kernel<4> for Sphere {
     fn bounds(fields: &[f32; 4]) -> Aabb {
         let center = Vec3::new(fields[0], fields[1], fields[2]);
         Aabb { min: center - fields[3], max: center + fields[3] }
+    }
+
+    fn nearest_to(fields: &[f32; 4], point: DVec3) -> DVec3 {
+        let center = vector(fields, 0);
+        center + (point - center).normalize_or(DVec3::Y) * f64::from(fields[3])
     }
 
     #[inline(always)]

@@ -6,12 +6,12 @@
 //! into a closed mesh meets one of the triangles around an edge or a corner. The distance is the combination of the
 //! corners' own depths by the edge functions, within the triangle's box.
 
-use super::{HIT_PADDING, Kernel, SurfacePoint, largest};
+use super::{HIT_PADDING, Kernel, SurfacePoint, largest, vector};
 use crate::geometry::{Aabb, Rays};
 use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Half a unit in the last place.
 const ROUNDING: f32 = 1.0 / (1 << 24) as f32;
@@ -161,6 +161,30 @@ impl Kernel<10> for Triangle {
 
     fn bounds(fields: &[f32; 10]) -> Aabb {
         Aabb::from_points([0, 3, 6].map(|i| Vec3::from_slice(&fields[i..i + 3])))
+    }
+
+    /// Over the inside, where the point lies within all three edges; else on the nearest edge.
+    fn nearest_to(fields: &[f32; 10], point: DVec3) -> DVec3 {
+        let corners = [0, 3, 6].map(|first| vector(fields, first));
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a);
+        let is_inside = |i: usize| {
+            let (from, to) = (corners[i], corners[(i + 1) % 3]);
+            normal.cross(to - from).dot(point - from) >= 0.0
+        };
+        if normal != DVec3::ZERO && (0..3).all(is_inside) {
+            return point - normal * (normal.dot(point - a) / normal.length_squared());
+        }
+        let on_edge = |i: usize| {
+            let (from, to) = (corners[i], corners[(i + 1) % 3]);
+            let edge = to - from;
+            let share = edge.dot(point - from) / edge.length_squared();
+            // Of an edge without length the share is no number, and its start as good as its end.
+            if share > 0.0 { from + edge * share.min(1.0) } else { from }
+        };
+        let candidates = [0, 1, 2].map(on_edge);
+        let nearer = |p: DVec3, q: DVec3| if q.distance_squared(point) < p.distance_squared(point) { q } else { p };
+        candidates.into_iter().fold(candidates[0], nearer)
     }
 
     #[inline(always)]

@@ -1,15 +1,30 @@
-//! The fly camera: where the walker stands, where they look, how fast they go.
+//! The walker: where they stand, where they look, how fast they go; flying through everything, or on their feet.
+
+mod body;
+mod gait;
+mod pace;
+#[cfg(test)]
+mod trials;
 
 use super::input::Motion;
 use super::look::SpikeFilter;
-use crate::geometry::Aabb;
-use crate::scene::Camera;
+use crate::geometry::{Aabb, Geometry};
+use crate::scene::{Camera, Scene};
+use body::{Body, World};
+use gait::{Gait, PERSON};
 use glam::{DQuat, DVec2, DVec3, Vec3};
+use pace::Pace;
 
-/// Speed is multiplied by this for each notch of the wheel.
-const NOTCH: f64 = 1.1;
-/// Most notches away from the scene's own speed, either way: hundreds of millions of times, yet never zero.
-const MAX_NOTCHES: f64 = 200.0;
+/// Metres a second that a person walks.
+const WALKING_SPEED: f64 = 2.5;
+/// Sizes of surroundings in metres that people walk in: others are in other units.
+const METRES: std::ops::RangeInclusive<f64> = 3.0..=1000.0;
+/// Elsewhere, what of the surroundings the first camera's height above its floor may be to be an eye height, and what
+/// is one if it is not.
+const EYE_SHARES: std::ops::RangeInclusive<f64> = 0.005..=0.3;
+const USUAL_EYE_SHARE: f64 = 0.06;
+/// Eye heights that can be set, in metres.
+pub const EYE_HEIGHT_RANGE: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 /// Seconds to cross the surroundings.
 const CROSSING_SECONDS: f64 = 6.0;
 /// Size in metres of surroundings that have none, such as a lone plane.
@@ -33,7 +48,16 @@ struct Pose {
     pitch: f64,
 }
 
-/// A walker who starts at one of the scene's cameras and flies from there.
+/// How the walker gets on.
+#[derive(Debug)]
+enum Way {
+    /// Wherever they want.
+    Fly,
+    /// On their feet; `None` where they were put somewhere and have not moved since.
+    Walk(Option<Gait>),
+}
+
+/// A walker who starts at one of the scene's cameras.
 #[derive(Debug)]
 pub struct Walker {
     /// Degrees of turn per count of the mouse.
@@ -48,8 +72,13 @@ pub struct Walker {
     upright: DQuat,
     pose: Pose,
     fov: f32,
-    base_speed: f64,
-    notches: f64,
+    way: Way,
+    eye_height: f64,
+    /// Of flying, and of walking.
+    flight: Pace,
+    stroll: Pace,
+    /// The jump key was up since the last jump.
+    may_jump: bool,
     spikes: SpikeFilter,
 }
 
@@ -66,14 +95,46 @@ impl Walker {
             upright,
             pose,
             fov: home.fov,
-            base_speed: surroundings / CROSSING_SECONDS,
-            notches: 0.0,
+            way: Way::Fly,
+            eye_height: PERSON,
+            flight: Pace::new(surroundings / CROSSING_SECONDS),
+            stroll: Pace::new(WALKING_SPEED),
+            may_jump: true,
             spikes: SpikeFilter::default(),
         }
     }
 
-    /// Goes to `camera` and takes its field of view. Speed stays.
+    /// Stands at `home` in `scene`, with a speed and an eye height that fit what is there.
+    pub fn in_scene(scene: &Scene, home: Camera) -> Self {
+        let surroundings = surroundings(scene.objects.iter().map(|object| object.bounds), home.eye);
+        let mut walker = Self::new(home, surroundings);
+        let world = World { geometry: &scene.geometry, up: walker.up() };
+        walker.take_eye_height(usual_eye_height(surroundings, world.distance(walker.pose.eye, -world.up)));
+        walker
+    }
+
+    /// Comes to another scene and stands at `home` there. Habits stay: of looking, and of walking or flying.
+    pub fn enter(&mut self, scene: &Scene, home: Camera) {
+        let way = if self.is_walking() { Way::Walk(None) } else { Way::Fly };
+        let (sensitivity, invert_look) = (self.sensitivity, self.invert_look);
+        *self = Self { sensitivity, invert_look, way, ..Self::in_scene(scene, home) };
+    }
+
+    /// Where the walk started.
+    pub fn home(&self) -> Camera {
+        self.home
+    }
+
+    /// Has another place be where the walk started; the walker stays where they are.
+    pub fn set_home(&mut self, home: Camera) {
+        self.home = home;
+    }
+
+    /// Goes to `camera` and takes its field of view. Speed stays. On foot, one falls from there at the next step only.
     pub fn go_to(&mut self, camera: Camera) {
+        if let Way::Walk(gait) = &mut self.way {
+            *gait = None;
+        }
         (self.upright, self.pose) = stand(&camera);
         self.fov = camera.fov;
         self.stance = camera;
@@ -96,7 +157,7 @@ impl Walker {
         Camera {
             eye: eye.as_vec3(),
             look_at: (eye + self.direction() * distance).as_vec3(),
-            up: (self.upright * DVec3::Y).as_vec3(),
+            up: self.up().as_vec3(),
             fov: self.fov,
             ..self.stance
         }
@@ -114,45 +175,129 @@ impl Walker {
         self.moved = true;
     }
 
-    /// Walks for `seconds`. Diagonals are as fast as straight lines.
-    pub fn walk(&mut self, motion: Motion, seconds: f64) {
+    /// Moves on for `seconds`. Diagonals are as fast as straight lines. False where walking found no room and became flying.
+    pub fn advance(&mut self, geometry: &Geometry, motion: Motion, seconds: f64) -> bool {
+        let seconds = seconds.clamp(0.0, MAX_STEP_SECONDS);
+        match self.way {
+            Way::Fly => self.fly(motion, seconds),
+            Way::Walk(None) if !motion.is_moving() => {}
+            Way::Walk(None) => return self.land(geometry),
+            Way::Walk(Some(_)) => self.walk(geometry, motion, seconds),
+        }
+        true
+    }
+
+    fn fly(&mut self, motion: Motion, seconds: f64) {
         if !motion.is_moving() {
             return;
         }
-        let forward = self.direction();
-        let up = self.upright * DVec3::Y;
-        let right = self.upright * DQuat::from_rotation_y(self.pose.yaw.to_radians()) * DVec3::X;
-        let wish = right * motion.right + up * motion.up + forward * motion.forward;
-        let pace = match (motion.fast, motion.slow) {
-            (true, false) => FAST_FACTOR,
-            (false, true) => 1.0 / FAST_FACTOR,
-            _ => 1.0,
-        };
-        let step = self.speed() * pace * seconds.clamp(0.0, MAX_STEP_SECONDS);
-        let eye = self.pose.eye + wish.normalize_or_zero() * step;
-        // Beyond what f32 can hold there is nothing to see: stay.
+        let wish = self.rightward() * motion.right + self.up() * motion.up + self.direction() * motion.forward;
+        let step = self.speed() * haste(motion) * seconds;
+        self.move_to(self.pose.eye + wish.normalize_or_zero() * step);
+    }
+
+    fn walk(&mut self, geometry: &Geometry, motion: Motion, seconds: f64) {
+        let (up, right) = (self.up(), self.rightward());
+        let wish = right * motion.right + up.cross(right) * motion.forward;
+        let velocity = wish.normalize_or_zero() * (self.speed() * haste(motion));
+        let Way::Walk(Some(gait)) = &mut self.way else { return };
+        if motion.up > 0.0 && std::mem::take(&mut self.may_jump) {
+            gait.jump();
+        }
+        self.may_jump |= motion.up <= 0.0;
+        gait.walk(World { geometry, up }, velocity, seconds);
+        let eye = gait.eye(up);
+        if eye != self.pose.eye {
+            self.move_to(eye);
+        }
+    }
+
+    /// Beyond what f32 can hold there is nothing to see: stay.
+    fn move_to(&mut self, eye: DVec3) {
         if eye.as_vec3().is_finite() {
             self.pose.eye = eye;
             self.moved = true;
         }
     }
 
-    /// Metres a second.
-    pub fn speed(&self) -> f64 {
-        self.base_speed * NOTCH.powf(self.notches)
+    /// Whether the walker is on their feet.
+    pub fn is_walking(&self) -> bool {
+        matches!(self.way, Way::Walk(_))
     }
 
-    /// Sets the speed in metres a second, within the range the wheel covers.
+    /// Whether the view changes although no key is held: one falls.
+    pub fn is_under_way(&self) -> bool {
+        matches!(&self.way, Way::Walk(Some(gait)) if gait.is_under_way())
+    }
+
+    /// Walks instead of flying, or the reverse. False where there is no room to walk.
+    pub fn toggle_walking(&mut self, geometry: &Geometry) -> bool {
+        if self.is_walking() {
+            self.way = Way::Fly;
+            return true;
+        }
+        self.land(geometry)
+    }
+
+    /// Takes another scene, the same or not: whoever walks looks for the floor anew.
+    pub fn enter_scene(&mut self) {
+        if let Way::Walk(gait) = &mut self.way {
+            *gait = None;
+        }
+    }
+
+    fn land(&mut self, geometry: &Geometry) -> bool {
+        let world = World { geometry, up: self.up() };
+        let gait = Gait::begin(Body { eye_height: self.eye_height }, world, self.pose.eye);
+        let found = gait.is_some();
+        self.way = gait.map_or(Way::Fly, |gait| Way::Walk(Some(gait)));
+        found
+    }
+
+    /// Height of a walker's eye above the floor, in metres.
+    pub fn eye_height(&self) -> f64 {
+        self.eye_height
+    }
+
+    /// Sets the eye height in metres, within [`EYE_HEIGHT_RANGE`]. False where there is no room for it.
+    pub fn set_eye_height(&mut self, geometry: &Geometry, eye_height: f64) -> bool {
+        if !eye_height.is_finite() {
+            return false;
+        }
+        let eye_height = eye_height.clamp(*EYE_HEIGHT_RANGE.start(), *EYE_HEIGHT_RANGE.end());
+        let up = self.up();
+        if let Way::Walk(Some(gait)) = &mut self.way {
+            let Some(other) = gait.with_eye_height(World { geometry, up }, eye_height) else { return false };
+            let eye = other.eye(up);
+            *gait = other;
+            self.move_to(eye);
+        }
+        self.take_eye_height(eye_height);
+        true
+    }
+
+    fn take_eye_height(&mut self, eye_height: f64) {
+        self.eye_height = eye_height;
+        self.stroll.set_usual(WALKING_SPEED * eye_height / PERSON);
+    }
+
+    /// Metres a second.
+    pub fn speed(&self) -> f64 {
+        if self.is_walking() { self.stroll.speed() } else { self.flight.speed() }
+    }
+
+    /// Sets the speed in metres a second, within the range the wheel covers. Walking and flying have one each.
     pub fn set_speed(&mut self, speed: f64) {
-        self.notches = 0.0;
-        self.scroll((speed / self.base_speed).ln() / NOTCH.ln());
+        self.pace_mut().set_speed(speed);
     }
 
     /// Changes the speed by notches of the wheel.
     pub fn scroll(&mut self, notches: f64) {
-        if notches.is_finite() {
-            self.notches = (self.notches + notches).clamp(-MAX_NOTCHES, MAX_NOTCHES);
-        }
+        self.pace_mut().scroll(notches);
+    }
+
+    fn pace_mut(&mut self) -> &mut Pace {
+        if self.is_walking() { &mut self.stroll } else { &mut self.flight }
     }
 
     /// Vertical field of view in degrees.
@@ -165,10 +310,39 @@ impl Walker {
         self.fov = fov.clamp(*FOV_RANGE.start(), *FOV_RANGE.end());
     }
 
+    /// The scene's up, of length 1.
+    fn up(&self) -> DVec3 {
+        self.upright * DVec3::Y
+    }
+
+    /// To the right of the view, of length 1 and level.
+    fn rightward(&self) -> DVec3 {
+        self.upright * DQuat::from_rotation_y(self.pose.yaw.to_radians()) * DVec3::X
+    }
+
     fn direction(&self) -> DVec3 {
         let (yaw, pitch) = (self.pose.yaw.to_radians(), self.pose.pitch.to_radians());
         self.upright * DVec3::new(-yaw.sin() * pitch.cos(), pitch.sin(), -yaw.cos() * pitch.cos())
     }
+}
+
+/// What the held keys make of the speed.
+fn haste(motion: Motion) -> f64 {
+    match (motion.fast, motion.slow) {
+        (true, false) => FAST_FACTOR,
+        (false, true) => 1.0 / FAST_FACTOR,
+        _ => 1.0,
+    }
+}
+
+/// The eye height that fits surroundings of a size: a person's, unless they are too small or too large to be in metres.
+/// There, that of the first camera above its floor, if it could be one.
+fn usual_eye_height(surroundings: f64, above_floor: Option<f64>) -> f64 {
+    if METRES.contains(&surroundings) {
+        return PERSON;
+    }
+    let of_camera = above_floor.filter(|height| EYE_SHARES.contains(&(height / surroundings)));
+    of_camera.unwrap_or(USUAL_EYE_SHARE * surroundings).clamp(*EYE_HEIGHT_RANGE.start(), *EYE_HEIGHT_RANGE.end())
 }
 
 /// What is up for a walker at `camera`, and their pose in that frame.
@@ -211,7 +385,7 @@ mod tests {
     fn walked(fps: u32, motion: Motion) -> f64 {
         let mut walker = walker();
         for _ in 0..fps {
-            walker.walk(motion, 1.0 / f64::from(fps));
+            walker.fly(motion, 1.0 / f64::from(fps));
         }
         walker.pose.eye.distance(walker.home.eye.as_dvec3())
     }
@@ -222,7 +396,7 @@ mod tests {
         let home = walker.home;
         assert_eq!(walker.camera(), home);
         walker.look(DVec2::new(30.0, 10.0));
-        walker.walk(Motion { forward: 1.0, ..Motion::default() }, 0.1);
+        walker.fly(Motion { forward: 1.0, ..Motion::default() }, 0.1);
         walker.set_fov(90.0);
         assert_ne!(walker.camera(), home);
         assert!(walker.camera().is_valid());
@@ -242,7 +416,7 @@ mod tests {
                 ..Camera::default()
             };
             let mut walker = Walker::new(home, 1.0);
-            walker.walk(Motion { right: 1.0, ..Motion::default() }, 1e-3);
+            walker.fly(Motion { right: 1.0, ..Motion::default() }, 1e-3);
             let (before, after) = (home.frame(64, 64), walker.camera().frame(64, 64));
             assert!(after.forward.abs_diff_eq(before.forward, 1e-5), "{up}: {} {}", before.forward, after.forward);
             assert!(after.right.abs_diff_eq(before.right, 1e-5), "{up}: {} {}", before.right, after.right);
@@ -253,7 +427,7 @@ mod tests {
     fn a_plan_view_keeps_its_heading() {
         let home = Camera { eye: Vec3::new(0.0, 9.0, 0.0), look_at: Vec3::ZERO, up: Vec3::NEG_X, ..Camera::default() };
         let mut walker = Walker::new(home, 1.0);
-        walker.walk(Motion { right: 1.0, ..Motion::default() }, 0.1);
+        walker.fly(Motion { right: 1.0, ..Motion::default() }, 0.1);
         let (before, after) = (home.frame(8, 8), walker.camera().frame(8, 8));
         assert!(after.right.abs_diff_eq(before.right, 1e-3), "{} {}", before.right, after.right);
         assert!(after.forward.abs_diff_eq(before.forward, 0.02), "{}", after.forward);
@@ -267,7 +441,7 @@ mod tests {
             let mut walker = walker();
             for frame in deltas.chunks(240 / fps) {
                 frame.iter().for_each(|&delta| walker.look(delta));
-                walker.walk(Motion::default(), 1.0 / fps as f64);
+                walker.fly(Motion::default(), 1.0 / fps as f64);
             }
             (walker.pose.yaw, walker.pose.pitch)
         };
@@ -300,26 +474,6 @@ mod tests {
         all.extend([Aabb::INFINITE, Aabb::EMPTY, bounds(Vec3::ZERO, 5000.0)]);
         assert!((surroundings(all.into_iter(), eye) / room - 1.0).abs() < 0.3);
         assert_eq!(surroundings([Aabb::INFINITE].into_iter(), eye), NO_SURROUNDINGS);
-    }
-
-    #[test]
-    fn the_wheel_multiplies_and_comes_back() {
-        let mut walker = walker();
-        let start = walker.speed();
-        walker.scroll(1.0);
-        assert!((walker.speed() / start - 1.1).abs() < 1e-12);
-        walker.scroll(-1.0);
-        (0..200).for_each(|_| walker.scroll(-1.0));
-        assert!(walker.speed() > 0.0);
-        (0..200).for_each(|_| walker.scroll(1.0));
-        assert!((walker.speed() / start - 1.0).abs() < 1e-9);
-        (0..1000).for_each(|_| walker.scroll(5.0));
-        assert!(walker.speed().is_finite());
-        walker.set_speed(3.5);
-        assert!((walker.speed() - 3.5).abs() < 1e-9);
-        walker.scroll(f64::NAN);
-        walker.set_speed(f64::NAN);
-        assert!(walker.speed() > 0.0);
     }
 
     #[test]
