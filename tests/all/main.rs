@@ -33,6 +33,7 @@ mod stress;
 mod subsampling;
 mod surfaces;
 mod temporary;
+mod terminal;
 #[path = "../common/tracer/mod.rs"]
 mod tracer;
 mod tune;
