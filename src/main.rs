@@ -9,10 +9,19 @@
 
 mod cli;
 
+use raywalk::scene::guard;
 use std::io::Write;
+use std::panic;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    let tell = panic::take_hook();
+    panic::set_hook(Box::new(move |panic| {
+        // What is guarded becomes an error, which is told of once.
+        if !guard::is_guarded() {
+            tell(panic);
+        }
+    }));
     let asked = match cli::command().try_get_matches() {
         Ok(asked) => asked,
         Err(answer) => return print_answer(&answer),

@@ -3,6 +3,9 @@
 /// What ends [`run`](super::run) other than the user.
 #[derive(Debug, thiserror::Error)]
 pub enum AppError {
+    /// The scene that was to be shown first could not be loaded.
+    #[error("{0}")]
+    NoScene(super::scenes::Failed),
     /// There is nothing to show a window on: no display server, or no way to draw on it. Rendering without
     /// a window still works.
     #[error("no display to open a window on: {0}")]

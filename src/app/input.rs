@@ -31,16 +31,34 @@ pub enum Hold {
 pub enum Command {
     /// Close the window.
     Quit,
-    /// Let the pointer go.
+    /// Let the pointer go, or else give up what is being loaded.
     ReleasePointer,
+    /// Open or close the help.
+    ToggleHelp,
     /// Open or close the panel.
     TogglePanel,
     /// Show or hide everything that lies over the picture.
     ToggleOverlay,
     /// Back to where the walk started.
     Home,
+    /// Choose a scene to open.
+    Open,
+    /// Load the scene once more.
+    Reload,
+    /// Tell of what is under the pointer.
+    Inspect,
     /// Walk instead of flying, or the reverse.
     ToggleWalking,
+    /// Keep the picture as a file.
+    Screenshot,
+    /// Fill the screen, or return to a window.
+    ToggleFullscreen,
+    /// A larger panel and text.
+    EnlargeUi,
+    /// A smaller panel and text.
+    ReduceUi,
+    /// Panel and text of the usual size.
+    ResetUi,
     /// Keep the view under a number.
     StoreBookmark(u8),
     /// Go to the view of a number.
@@ -73,11 +91,22 @@ pub const HOLD_KEYS: &[(KeyCode, Hold)] = &[
 pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::KeyQ, true, Command::Quit),
     (KeyCode::Escape, false, Command::ReleasePointer),
-    (KeyCode::F1, false, Command::TogglePanel),
+    (KeyCode::F1, false, Command::ToggleHelp),
     (KeyCode::Tab, false, Command::TogglePanel),
     (KeyCode::KeyH, false, Command::ToggleOverlay),
     (KeyCode::Home, false, Command::Home),
+    (KeyCode::KeyO, true, Command::Open),
+    (KeyCode::F5, false, Command::Reload),
+    (KeyCode::KeyI, false, Command::Inspect),
     (KeyCode::KeyG, false, Command::ToggleWalking),
+    (KeyCode::F12, false, Command::Screenshot),
+    (KeyCode::F11, false, Command::ToggleFullscreen),
+    (KeyCode::Equal, true, Command::EnlargeUi),
+    (KeyCode::NumpadAdd, true, Command::EnlargeUi),
+    (KeyCode::Minus, true, Command::ReduceUi),
+    (KeyCode::NumpadSubtract, true, Command::ReduceUi),
+    (KeyCode::Digit0, true, Command::ResetUi),
+    (KeyCode::Numpad0, true, Command::ResetUi),
     (KeyCode::KeyC, true, Command::CopyCamera),
     (KeyCode::KeyV, true, Command::PasteCamera),
     (KeyCode::KeyR, false, Command::ToggleRecording),
@@ -109,14 +138,21 @@ pub const HELP: &[(&str, &str)] = &[
     ("Shift, Alt", "faster, slower"),
     ("Wheel", "change the speed"),
     ("Click", "look with the mouse"),
-    ("Esc", "let the mouse go"),
+    ("Esc", "let the mouse go; close the help; stop loading"),
     ("G", "walk or fly"),
     ("Home", "back to the start"),
+    ("F1", "help"),
+    ("Tab", "this panel"),
     ("1 to 9", "go to a bookmark; with Ctrl, set it"),
     ("Ctrl+C, Ctrl+V", "copy, paste the camera"),
     ("R, P", "record a camera path, replay it"),
-    ("F1, Tab", "this panel"),
     ("H", "hide everything"),
+    ("I, right click", "tell of the thing under the pointer"),
+    ("Ctrl+O", "open a scene; or drop one on the window"),
+    ("F5", "load the scene again"),
+    ("F11", "full screen"),
+    ("F12", "screenshot"),
+    ("Ctrl and +, -, 0", "panel larger, smaller, as usual"),
     ("Ctrl+Q", "quit"),
 ];
 
@@ -243,8 +279,8 @@ mod tests {
     #[test]
     fn commands_come_once_and_need_their_chord() {
         let mut keys = Keys::default();
-        assert_eq!(keys.press(code(KeyCode::F1), false), Some(Command::TogglePanel));
-        assert_eq!(keys.press(code(KeyCode::F1), true), None);
+        assert_eq!(keys.press(code(KeyCode::Tab), false), Some(Command::TogglePanel));
+        assert_eq!(keys.press(code(KeyCode::Tab), true), None);
         assert_eq!(keys.press(code(KeyCode::KeyQ), false), None);
         keys.set_ctrl(true);
         assert_eq!(keys.press(code(KeyCode::KeyQ), false), Some(Command::Quit));

@@ -8,15 +8,16 @@ use crate::measure::Run;
 use crate::measure::tune::{self, Stopped, Studio, Task, Trial};
 use crate::measure::watch::Watch;
 use crate::render::{CancelToken, Film};
-use crate::scene::Camera;
+use crate::scene::{Camera, Scene};
 use crate::settings::Settings;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What both threads know of a search.
 #[derive(Debug, Default)]
 pub struct Search {
     /// What is to be searched next.
-    pub asked: Option<(Task, Survey)>,
+    pub asked: Option<(Arc<Scene>, Task, Survey)>,
     /// The search under way has to stop.
     pub stop: bool,
     /// One of its frames is being traced.
@@ -31,6 +32,7 @@ pub struct Measuring<'a> {
     render: Render<'a>,
     at_rest: &'a mut AtRest,
     word: &'a dyn Fn(Word),
+    scene: Arc<Scene>,
     watch: Watch,
     survey: Survey,
     /// When the next frame of the window may begin.
@@ -38,16 +40,17 @@ pub struct Measuring<'a> {
 }
 
 impl<'a> Measuring<'a> {
-    /// Sets up a search that tells of itself in `survey`.
+    /// Sets up a search in `scene` that tells of itself in `survey`.
     pub fn new(
         worker: &'a Worker,
         render: Render<'a>,
         at_rest: &'a mut AtRest,
         word: &'a dyn Fn(Word),
+        scene: Arc<Scene>,
         survey: Survey,
     ) -> Self {
         let watch = Watch::over(CancelToken::default(), worker.cancel.clone());
-        Self { worker, render, at_rest, word, watch, survey, next_start: Instant::now() }
+        Self { worker, render, at_rest, word, scene, watch, survey, next_start: Instant::now() }
     }
 
     /// Searches until there is an end.
@@ -112,7 +115,8 @@ impl Studio for Measuring<'_> {
         longest: Option<Duration>,
     ) -> Result<Option<f64>, Stopped> {
         let (width, height) = (film.width(), film.height());
-        let job = Job { camera: *camera, settings: settings.clone(), width, height, lowering: Lowering::NONE };
+        let (scene, settings) = (Arc::clone(&self.scene), settings.clone());
+        let job = Job { scene, camera: *camera, settings, width, height, lowering: Lowering::NONE };
         loop {
             self.serve()?;
             if !self.begin(longest) {

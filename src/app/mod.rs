@@ -2,23 +2,30 @@
 //!
 //! The main thread runs the event loop: it gathers input, moves the walker, uploads, draws and presents, each a
 //! matter of milliseconds. Frames are traced on a thread of their own ([`tracer`]), so that neither input nor the
-//! overlay ever waits for one. A search for cheap settings shares that thread and gives way to every frame ([`measuring`]).
+//! overlay ever waits for one. Scenes are loaded on another ([`scenes`]); the one shown stays until the next stands. A search for cheap settings shares that thread and gives way to every frame ([`measuring`]).
 //!
 //! Architecture invariant: with nothing moved and nothing changed, nothing is traced, drawn or woken up for.
 
 pub mod bookmarks;
+pub mod config;
 pub mod error;
 pub mod history;
 pub mod input;
+pub mod inspection;
 pub mod labels;
+pub mod lighting;
 pub mod overlay;
 pub mod present;
+pub mod scenes;
+pub mod screenshot;
 pub mod survey;
 pub mod walker;
 
 mod at_rest;
 mod capture;
+mod desktop;
 mod display;
+mod errands;
 mod gpu;
 mod journey;
 mod layer;
@@ -31,23 +38,45 @@ mod steering;
 mod tracer;
 mod viewer;
 
+pub use config::UI_SCALES;
 pub use error::AppError;
 
-use crate::scene::{Camera, Scene};
+use crate::picture::NumberedName;
+use crate::scene::{Camera, LoadOptions};
 use crate::settings::Settings;
-use std::sync::Arc;
+use config::{Config, Store};
+use scenes::{Arrival, Load};
+use std::path::PathBuf;
 
 /// What to open the window on.
 #[derive(Clone, Debug)]
 pub struct AppOptions {
     /// What to walk through.
-    pub scene: Arc<Scene>,
-    /// Where the walk starts.
-    pub camera: Camera,
+    pub opening: Opening,
+    /// How the user's scenes are loaded.
+    pub load: LoadOptions,
     /// How frames are traced at first.
     pub settings: Settings,
     /// Size of the window's inside in physical pixels.
     pub size: (u32, u32),
+    /// What the user's last window left, and where to keep what this one leaves; without a store, nothing is kept.
+    pub config: Config,
+    /// See `config`.
+    pub store: Option<Store>,
+    /// The window opens as the last one was, whatever `size` says.
+    pub as_before: bool,
+    /// Where screenshots go.
+    pub screenshots: NumberedName,
+}
+
+/// The scene that a window opens on.
+#[derive(Clone, Debug)]
+pub enum Opening {
+    /// It is there.
+    Scene(Arrival),
+    /// It is being loaded from this file. The window shows how far that has come, and closes with
+    /// [`AppError::NoScene`] should it fail.
+    Loading(Load, PathBuf),
 }
 
 /// Where things stood when the user closed the window.
@@ -57,6 +86,8 @@ pub struct AppExit {
     pub camera: Camera,
     /// The last settings.
     pub settings: Settings,
+    /// What could not be done at the end, one line each.
+    pub warnings: Vec<String>,
 }
 
 /// Opens the window and runs until it is closed. To be called on the main thread, once in a process.

@@ -1,31 +1,39 @@
 //! One open window: who gets which event, when to trace, when to draw.
 
 use super::at_rest::REST;
-use super::bookmarks::Bookmarks;
 use super::capture::{Capture, PointerHost};
+use super::config::{Keeper, UI_SCALES, WindowState};
+use super::desktop;
+use super::errands::{self, Errands};
 use super::error::AppError;
 use super::gpu::{Gpu, Target};
 use super::history::History;
 use super::input::{Command, Keys};
+use super::inspection::{self, Inspection};
 use super::journey::Journey;
 use super::labels::Labels;
 use super::layer::Layer;
+use super::lighting::Lighting;
 use super::lowering::{lowered, presets_below};
 use super::overlay::{self, Change, Notices, Showing, Shown, Tuning, View};
 use super::pacing::{Limiter, Rates};
 use super::present::Presenter;
+use super::scenes::{Arrival, News, Scenes, Wish};
+use super::screenshot::{self, Camerawork, Place, Shot};
 use super::steering::Steering;
 use super::survey::{self, End, Survey};
-use super::tracer::{Job, TracedFrame, Tracer, Word};
-use super::walker::Walker;
-use super::{AppExit, AppOptions};
+use super::tracer::{Job, TracedFrame, Tracer};
+use super::viewer::Call;
+use super::walker::{self, Walker};
+use super::{AppExit, AppOptions, Opening};
 use crate::measure::metric::{METRICS, metric};
 use crate::measure::tune::{Bound, Task};
+use crate::picture::NumberedName;
 use crate::render::FrameStats;
 use crate::scene::{self, Camera, Scene};
 use crate::settings::Settings;
 use glam::DVec2;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use winit::dpi::{PhysicalPosition, PhysicalSize};
@@ -44,8 +52,12 @@ const DEVICE_TRIAL: Duration = Duration::from_secs(10);
 const MAX_PIXELS: f64 = 7680.0 * 4320.0;
 /// A search tries no new settings after this time.
 const SEARCH_BUDGET: Duration = Duration::from_secs(30);
+/// Between two looks at how far a load has come.
+const TELL: Duration = Duration::from_millis(100);
 /// What is told where a walker does not fit.
 const NO_ROOM: &str = "There is no room to walk here: flying on";
+/// A step of the size of panel and text.
+const UI_STEP: f32 = 1.1;
 /// Pixels of smooth scrolling that count as one notch of a wheel.
 const PIXELS_PER_NOTCH: f64 = 40.0;
 
@@ -57,12 +69,16 @@ pub struct Session {
     gpu: Gpu,
     window: Arc<Window>,
     display: OwnedDisplayHandle,
+    scenes: Scenes,
+    /// The scene as it was loaded, and as it is lit.
     scene: Arc<Scene>,
+    lit: Arc<Scene>,
+    lighting: Lighting,
+    inspection: Option<Inspection>,
     settings: Settings,
     walker: Walker,
     keys: Keys,
     labels: Labels,
-    bookmarks: Bookmarks,
     journey: Journey,
     capture: Capture,
     /// Where the pointer is, in physical pixels.
@@ -71,6 +87,13 @@ pub struct Session {
     stats: FrameStats,
     shown: Shown,
     notices: Notices,
+    keeper: Keeper,
+    /// The window opened as the last one was: no scene resizes it.
+    is_placed: bool,
+    ui_scale: f32,
+    errands: Errands,
+    screenshots: NumberedName,
+    camerawork: Camerawork,
     posted: Option<Job>,
     /// What the last frame shows, and with how many samples a pixel if it was refined.
     traced: Option<(Job, Option<u32>)>,
@@ -93,15 +116,31 @@ pub struct Session {
 }
 
 impl Session {
-    /// Opens the window and starts the tracer, which sends `word` of its frames.
+    /// Opens the window and starts the tracer. Other threads wake the event loop by `call`.
     pub fn open(
         event_loop: &ActiveEventLoop,
         options: &AppOptions,
-        word: impl Fn(Word) + Send + 'static,
+        call: Arc<dyn Fn(Call) + Send + Sync>,
     ) -> Result<Self, AppError> {
-        let attributes = Window::default_attributes()
-            .with_title(format!("raywalk - {}", options.scene.name))
-            .with_inner_size(PhysicalSize::new(options.size.0, options.size.1));
+        let wake = Arc::clone(&call);
+        let mut scenes =
+            Scenes::new(options.load.clone(), options.config.recent.clone(), Arc::new(move || wake(Call::Scenes)));
+        let (scene, camera) = match &options.opening {
+            Opening::Scene(arrival) => {
+                scenes.show(arrival);
+                (Arc::clone(&arrival.scene), arrival.camera)
+            }
+            Opening::Loading(load, file) => {
+                scenes.expect(load.clone(), file.clone());
+                let nothing = scene::nothing().map_err(|error| AppError::NoScene(error.into()))?;
+                let camera = nothing.cameras[0].camera;
+                (Arc::new(nothing), camera)
+            }
+        };
+        let attributes = Window::default_attributes().with_title(title(&scene));
+        let size = WindowState { size: options.size, ..WindowState::default() };
+        let place = options.config.window.filter(|_| options.as_before).unwrap_or(size);
+        let attributes = desktop::placed(attributes, place, event_loop);
         let window = event_loop.create_window(attributes).map_err(|error| AppError::NoDisplay(error.to_string()))?;
         let window = Arc::new(window);
         let display = event_loop.owned_display_handle();
@@ -109,32 +148,49 @@ impl Session {
         let millihertz = window.current_monitor().and_then(|monitor| monitor.refresh_rate_millihertz());
         let rates = Rates::new(millihertz, gpu.is_software);
         let now = Instant::now();
+        let mut keeper = Keeper::new(options.store.clone(), options.config.clone(), &options.settings);
+        keeper.open_window(place);
+        let is_placed = options.as_before && options.config.window.is_some();
+        let config = &keeper.config;
+        let mut walker = Walker::in_scene(&scene, camera);
+        walker.invert_look = config.invert_look;
+        walker.sensitivity = config.sensitivity.unwrap_or(walker.sensitivity);
+        let news = Arc::clone(&call);
         let mut session = Self {
-            tracer: Tracer::start(options.scene.clone(), rates.display, word)?,
-            layer: Layer::new(&gpu, &window),
+            tracer: Tracer::start(rates.display, move |word| call(Call::Traced(word)))?,
+            layer: Layer::new(&gpu, &window, config.ui_scale),
             presenter: Presenter::new(&gpu, options.settings.present),
             gpu,
             window,
             display,
-            scene: options.scene.clone(),
             settings: options.settings.clone(),
-            walker: Walker::in_scene(&options.scene, options.camera),
+            walker,
+            scenes,
+            lighting: Lighting::of(&scene),
+            lit: Arc::clone(&scene),
+            scene,
+            inspection: None,
             keys: Keys::default(),
             labels: Labels::default(),
-            bookmarks: Bookmarks::default(),
             journey: Journey::default(),
             capture: Capture::default(),
             pointer: DVec2::ZERO,
             history: History::default(),
             stats: FrameStats::default(),
-            shown: Shown::default(),
+            shown: Shown { panel: config.panel, ..Shown::default() },
             notices: Notices::default(),
+            ui_scale: config.ui_scale,
+            keeper,
+            is_placed,
+            errands: Errands::start(move || news(Call::Errand))?,
+            screenshots: options.screenshots.clone(),
+            camerawork: Camerawork::default(),
             posted: None,
             traced: None,
             steering: Steering::new(presets_below(&options.settings)),
             bound: overlay::usual_bound(metric("flip").unwrap_or(&METRICS[0])),
             survey: None,
-            stands: (options.camera, None),
+            stands: (camera, None),
             fresh: None,
             rates,
             picture: Limiter::default(),
@@ -149,8 +205,61 @@ impl Session {
     }
 
     /// Ends the session and says where it stood.
-    pub fn close(self) -> AppExit {
-        AppExit { camera: self.walker.camera(), settings: self.settings.clone() }
+    pub fn close(mut self) -> AppExit {
+        let (camera, settings) = (self.walker.camera(), self.settings.clone());
+        self.save_config();
+        if let Some(shot) = self.camerawork.give_up() {
+            self.write(shot);
+        }
+        let warnings = self.errands.finish().into_iter().filter_map(|news| match news {
+            errands::News::Problem(text) => Some(text),
+            errands::News::Done(_) => None,
+        });
+        AppExit { camera, settings, warnings: warnings.collect() }
+    }
+
+    /// Brings what is remembered up to date and has it written, if there is anything new.
+    fn save_config(&mut self) {
+        if let Some(state) = desktop::state_of(&self.window) {
+            self.keeper.keep_window(state);
+        }
+        self.keeper.keep_settings(&self.settings);
+        let config = &mut self.keeper.config;
+        config.ui_scale = self.ui_scale;
+        config.invert_look = self.walker.invert_look;
+        config.sensitivity = (self.walker.sensitivity != walker::SENSITIVITY).then_some(self.walker.sensitivity);
+        config.panel = self.shown.panel;
+        config.recent.clone_from(self.scenes.recent());
+        if let Some(errand) = self.keeper.save() {
+            self.errands.run(errand);
+        }
+    }
+
+    /// Keeps the picture on display as a file, or what it is about to become.
+    fn take_screenshot(&mut self, now: Instant) {
+        let film = self.fresh.as_ref().map(|frame| &frame.film).or_else(|| self.presenter.frame());
+        let shot = film.zip(self.traced.as_ref()).map(|(film, (job, samples))| Shot::new(film, job, *samples));
+        match shot.map(|shot| self.camerawork.ask(shot)) {
+            None => self.notices.warn(now, "no picture yet"),
+            Some(None) => self.notices.tell(now, "screenshot as soon as the picture has all its samples"),
+            Some(Some(shot)) => self.write(shot),
+        }
+    }
+
+    fn write(&self, shot: Shot) {
+        let place = Place { file: self.scenes.file().map(Path::to_owned), cameras: self.scene.cameras.clone() };
+        self.errands.run(screenshot::errand(shot, place, self.screenshots.clone()));
+    }
+
+    /// Tells what came of errands.
+    pub fn tell_news(&mut self, now: Instant) {
+        for news in self.errands.news().collect::<Vec<_>>() {
+            match news {
+                errands::News::Done(text) => self.notices.tell(now, text),
+                errands::News::Problem(text) => self.notices.warn(now, text),
+            }
+            self.repaint(now);
+        }
     }
 
     /// Passes an event to whom it concerns; true to close the window.
@@ -172,6 +281,13 @@ impl Session {
             WindowEvent::MouseInput { state, button: MouseButton::Left, .. } if self.on_button(*state) => {
                 return Ok(false);
             }
+            WindowEvent::MouseInput { state: ElementState::Pressed, button: MouseButton::Right, .. }
+                if self.capture.is_active() || !self.layer.takes_click() =>
+            {
+                self.inspect();
+                self.repaint(now);
+                return Ok(false);
+            }
             WindowEvent::MouseWheel { delta, .. } if self.capture.is_active() || !self.layer.is_under_pointer() => {
                 self.walker.scroll(notches(*delta));
                 self.repaint(now);
@@ -185,9 +301,16 @@ impl Session {
             }
             WindowEvent::Resized(size) => {
                 self.gpu.resize(*size);
+                self.keeper.touch(now);
                 self.repaint(now);
             }
+            WindowEvent::Moved(position) => self.keeper.window_moved(now, (position.x, position.y)),
             WindowEvent::Occluded(occluded) => self.occluded = *occluded,
+            WindowEvent::DroppedFile(path) => self.scenes.drop_in(path.clone()),
+            WindowEvent::HoveredFile(_) | WindowEvent::HoveredFileCancelled => {
+                self.scenes.hover(matches!(event, WindowEvent::HoveredFile(_)));
+                self.repaint(now);
+            }
             _ => {}
         }
         let of_the_mouse = matches!(
@@ -244,10 +367,20 @@ impl Session {
             return false;
         }
         match command {
-            Some(Command::ReleasePointer) => {
-                self.journey.stop_replay();
+            Some(Command::ReleasePointer) if self.capture.is_active() => {
                 self.capture.release(&WindowHost(&self.window));
             }
+            Some(Command::ReleasePointer) if self.journey.stop_replay() => {}
+            Some(Command::ReleasePointer) if self.shown.help => self.shown.help = false,
+            Some(Command::ReleasePointer) => self.wish(Wish::Cancel),
+            Some(Command::ToggleHelp) => {
+                // It is read with a free pointer.
+                self.capture.release(&WindowHost(&self.window));
+                self.shown = self.shown.with_help_toggled();
+            }
+            Some(Command::Open) => self.wish(Wish::Open),
+            Some(Command::Reload) => self.wish(Wish::Reload),
+            Some(Command::Inspect) => self.inspect(),
             Some(Command::TogglePanel) => self.shown = self.shown.with_panel_toggled(),
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
             Some(Command::Home) => {
@@ -255,14 +388,21 @@ impl Session {
                 self.walker.go_home();
             }
             Some(Command::ToggleWalking) => self.toggle_walking(now),
+            Some(Command::Screenshot) => self.take_screenshot(now),
+            Some(Command::ToggleFullscreen) => desktop::toggle_fullscreen(&self.window),
+            Some(Command::EnlargeUi) => self.scale_ui(self.ui_scale * UI_STEP),
+            Some(Command::ReduceUi) => self.scale_ui(self.ui_scale / UI_STEP),
+            Some(Command::ResetUi) => self.scale_ui(1.0),
             Some(Command::StoreBookmark(number)) => {
-                self.bookmarks.store(number, self.walker.camera());
+                self.keeper.config.bookmarks.of_mut(self.scenes.file()).store(number, self.walker.camera());
                 self.notices.tell(now, format!("Bookmark {number} set: key {number} comes back here"));
             }
-            Some(Command::GoToBookmark(number)) => match self.bookmarks.get(number) {
-                Some(camera) => self.go_to(camera),
-                None => self.notices.warn(now, format!("There is no bookmark {number}: Ctrl+{number} sets it")),
-            },
+            Some(Command::GoToBookmark(number)) => {
+                match self.keeper.config.bookmarks.of(self.scenes.file()).get(number) {
+                    Some(camera) => self.go_to(camera),
+                    None => self.notices.warn(now, format!("There is no bookmark {number}: Ctrl+{number} sets it")),
+                }
+            }
             Some(Command::CopyCamera) => {
                 self.layer.copy(self.walker.camera().to_json());
                 self.notices.tell(now, "Camera copied as JSON");
@@ -272,6 +412,7 @@ impl Session {
             Some(Command::ToggleReplay) => self.toggle_replay(now),
             Some(Command::Quit) | None => return false,
         }
+        self.keeper.touch(now);
         self.repaint(now);
         false
     }
@@ -367,8 +508,11 @@ impl Session {
             self.survey = Some(survey);
             self.figures.demand(Instant::now(), self.rates.figures);
         }
-        let Some(frame) = self.tracer.take() else { return };
         let now = Instant::now();
+        let Some(frame) = self.tracer.take() else { return };
+        if let Some(shot) = self.camerawork.frame(&frame.film, &frame.job, frame.samples) {
+            self.write(shot);
+        }
         if frame.samples.is_none() {
             self.history.record(frame.finished, frame.stats.frame_ms);
             if let Some(fps) = self.settings.target_fps {
@@ -388,14 +532,81 @@ impl Session {
         }
     }
 
+    /// Takes up what has become of scenes.
+    ///
+    /// # Errors
+    /// The first scene of all could not be loaded.
+    pub fn on_news(&mut self) -> Result<(), AppError> {
+        while let Some(news) = self.scenes.news() {
+            match news {
+                News::Opened(arrival) => self.enter(arrival),
+                News::Reloaded(arrival) => self.replace_scene(arrival.scene),
+                News::Nothing(failed) => return Err(AppError::NoScene(failed)),
+            }
+        }
+        self.repaint(Instant::now());
+        Ok(())
+    }
+
+    /// Goes to another scene.
+    fn enter(&mut self, Arrival { scene, camera, size, .. }: Arrival) {
+        self.walker.enter(&scene, camera);
+        self.lighting = Lighting::of(&scene);
+        if let Some((width, height)) = size.filter(|_| !self.is_placed) {
+            // The window stays as it is where the system does not let it be resized.
+            let _ = self.window.request_inner_size(PhysicalSize::new(width, height));
+        }
+        self.show_scene(scene);
+    }
+
+    /// Shows what the scene has become, from where the walker stands.
+    fn replace_scene(&mut self, scene: Arc<Scene>) {
+        let home = self.walker.home();
+        let named = self.scene.cameras.iter().position(|named| named.camera == home);
+        if let Some(moved) = named.and_then(|index| scene.cameras.get(index)) {
+            self.walker.set_home(moved.camera);
+        }
+        self.lighting.keep_for(&scene);
+        self.show_scene(scene);
+    }
+
+    fn show_scene(&mut self, scene: Arc<Scene>) {
+        self.tracer.stop_search();
+        self.survey = None;
+        self.steering = Steering::new(presets_below(&self.settings));
+        self.window.set_title(&title(&scene));
+        self.inspection = None;
+        self.lit = self.lighting.lit(&scene);
+        self.scene = scene;
+    }
+
+    /// Tells of what the picture shows under the pointer, or in its middle while the pointer is captured.
+    fn inspect(&mut self) {
+        let Some((Job { scene, camera, width, height, .. }, _)) = &self.traced else { return };
+        let host = WindowHost(&self.window);
+        let place = if self.capture.is_active() { DVec2::splat(0.5) } else { self.pointer / host.size() };
+        self.inspection = inspection::inspect(scene, camera, (*width, *height), place);
+    }
+
+    /// Does what the user asks of scenes.
+    fn wish(&mut self, wish: Wish) {
+        self.scenes.grant(wish, &*self.window);
+    }
+
     /// Moves on, asks for frames and drawings as needed, and says when to be called again at the latest.
     pub fn tick(&mut self, now: Instant) -> Option<Instant> {
         self.step(now);
+        if self.scenes.open_dropped() {
+            self.repaint(now);
+        }
+        if self.keeper.due().is_some_and(|due| due <= now) {
+            self.save_config();
+        }
         let travel = self.travel(now);
         let rest = self.post(now);
         let mut next = self.tracer.drop_outdated();
         let mut call_at = |at: Instant| next = Some(next.map_or(at, |next: Instant| next.min(at)));
-        rest.into_iter().chain(travel).for_each(&mut call_at);
+        rest.into_iter().chain(travel).chain(self.keeper.due()).for_each(&mut call_at);
         if self.stepped.is_some() {
             call_at(now + STEP);
         }
@@ -444,7 +655,8 @@ impl Session {
         let lowering = self.steering.lowering(stops.is_some());
         let settings = lowered(&self.settings, lowering);
         let (width, height) = (lowering.scaled(width), lowering.scaled(height));
-        let job = Job { camera, settings, width, height, lowering };
+        let scene = Arc::clone(&self.lit);
+        let job = Job { scene, camera, settings, width, height, lowering };
         if self.posted.as_ref() != Some(&job) {
             self.posted = Some(job.clone());
             self.tracer.post(job);
@@ -507,12 +719,18 @@ impl Session {
             fov: self.walker.fov(),
             sensitivity: self.walker.sensitivity,
             invert_look: self.walker.invert_look,
+            ui_scale: self.ui_scale,
             tuning: Tuning {
                 bound: self.bound,
                 survey: self.survey.as_ref(),
                 drawn: self.traced.as_ref().map_or(&self.settings, |(job, _)| &job.settings),
                 is_elsewhere: self.survey.as_ref().is_some_and(|survey| survey.camera != self.walker.camera()),
             },
+            scenes: self.scenes.report(now),
+            lights: self.lighting.dials(),
+            inspection: self.inspection.as_ref(),
+            stands: self.traced.as_ref().map(|(job, _)| job.camera).filter(|camera| *camera == self.walker.camera()),
+            crosshair: self.capture.is_active(),
             notices: self.notices.current(),
             labels: &self.labels,
             activity: match (self.journey.is_recording(), self.journey.is_replaying()) {
@@ -536,12 +754,16 @@ impl Session {
             let interval = if self.layer.is_pointed_at() { self.rates.display } else { self.rates.figures };
             self.figures.demand(now + delay, interval);
         }
+        if self.scenes.is_loading() {
+            self.figures.demand_at(now + TELL);
+        }
         if shown.overlay && !resting {
             // The last frame may have been shown: look again, to say so.
             self.figures.demand_at(now + Duration::from_millis(300));
         }
         if !changes.is_empty() {
             changes.into_iter().for_each(|change| self.apply(change));
+            self.keeper.touch(now);
             self.repaint(now);
         }
     }
@@ -583,8 +805,27 @@ impl Session {
                     survey.end.get_or_insert(End::Stopped);
                 }
             }
+            Change::UiScale(scale) => self.scale_ui(scale),
             Change::TogglePanel => self.shown = self.shown.with_panel_toggled(),
+            Change::Scenes(wish) => self.wish(wish),
+            Change::Light(light, dial) => {
+                self.lighting.turn(light, dial);
+                self.lit = self.lighting.lit(&self.scene);
+            }
+            Change::ResetLights => {
+                self.lighting.reset();
+                self.lit = self.lighting.lit(&self.scene);
+            }
+            Change::CloseInspection => self.inspection = None,
+            Change::ToggleHelp => self.shown = self.shown.with_help_toggled(),
         }
+    }
+
+    /// Panel and text `scale` times as large as usual.
+    fn scale_ui(&mut self, scale: f32) {
+        // In steps of a twentieth, so that as many steps back lead back.
+        self.ui_scale = ((20.0 * scale).round() / 20.0).clamp(*UI_SCALES.start(), *UI_SCALES.end());
+        self.layer.set_scale(self.ui_scale);
     }
 
     /// Starts a search on what is seen from here.
@@ -606,7 +847,7 @@ impl Session {
         };
         let survey = Survey::new(camera, bound);
         self.survey = Some(survey.clone());
-        self.tracer.search(task, survey);
+        self.tracer.search(Arc::clone(&self.lit), task, survey);
     }
 
     /// Starts over on a new device, unless the old one did not even last.
@@ -623,7 +864,7 @@ impl Session {
     /// Starts showing frames in another way, or on another device.
     fn replace_presenter(&mut self, now: Instant) {
         self.presenter = Presenter::new(&self.gpu, self.settings.present);
-        self.layer = Layer::new(&self.gpu, &self.window);
+        self.layer = Layer::new(&self.gpu, &self.window, self.ui_scale);
         self.posted = None;
         self.repaint(now);
     }
@@ -638,6 +879,10 @@ fn picture_size((width, height): (u32, u32)) -> (u32, u32) {
     let scale = (MAX_PIXELS / pixels).sqrt();
     let scaled = |side: u32| ((f64::from(side) * scale) as u32).max(1);
     (scaled(width), scaled(height))
+}
+
+fn title(scene: &Scene) -> String {
+    format!("raywalk - {}", scene.name)
 }
 
 fn notches(delta: MouseScrollDelta) -> f64 {

@@ -23,6 +23,8 @@ const PATIENCE: Duration = Duration::from_millis(300);
 /// What to trace.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
+    /// What is seen.
+    pub scene: Arc<Scene>,
     /// From where.
     pub camera: Camera,
     /// How.
@@ -38,7 +40,9 @@ pub struct Job {
 impl Job {
     /// Whether a frame of `other` shows this one from elsewhere: worth finishing while the walker moves.
     fn differs_by_camera_only(&self, other: &Self) -> bool {
-        self.settings == other.settings && (self.width, self.height) == (other.width, other.height)
+        self.scene == other.scene
+            && self.settings == other.settings
+            && (self.width, self.height) == (other.width, other.height)
     }
 
     /// How long a frame of `running` may go on while this one waits; `None` for to its end.
@@ -145,15 +149,15 @@ pub struct Tracer {
 }
 
 impl Tracer {
-    /// Starts a thread that traces `scene`, at most one frame per `interval`, and sends `word`.
+    /// Starts a thread that traces at most one frame per `interval`, and sends `word`.
     ///
     /// # Errors
     /// The system's reason when no thread can be started.
-    pub fn start(scene: Arc<Scene>, interval: Duration, word: impl Fn(Word) + Send + 'static) -> std::io::Result<Self> {
+    pub fn start(interval: Duration, word: impl Fn(Word) + Send + 'static) -> std::io::Result<Self> {
         let mut scratch = Scratch::new();
         let cancel = scratch.cancel.clone();
         let render =
-            move |job: &Job, film: &mut Film| render_frame(&scene, &job.camera, &job.settings, &mut scratch, film);
+            move |job: &Job, film: &mut Film| render_frame(&job.scene, &job.camera, &job.settings, &mut scratch, film);
         Self::start_with(render, cancel, interval, word)
     }
 
@@ -183,10 +187,10 @@ impl Tracer {
         self.shared.wake.notify_one();
     }
 
-    /// Starts a search between the frames, in place of one that is under way; tells of it in `survey`.
-    pub fn search(&self, task: tune::Task, survey: Survey) {
+    /// Starts a search in `scene` between the frames, in place of one that is under way; tells of it in `survey`.
+    pub fn search(&self, scene: Arc<Scene>, task: tune::Task, survey: Survey) {
         let mut exchange = self.shared.lock();
-        exchange.search.asked = Some((task, survey));
+        exchange.search.asked = Some((scene, task, survey));
         if exchange.refining || exchange.search.in_frame {
             self.cancel.cancel();
         }
@@ -268,7 +272,7 @@ enum Task {
     /// One more sample a pixel of the last view.
     Pass,
     /// A search for cheap settings.
-    Search(Box<(tune::Task, Survey)>),
+    Search(Box<(Arc<Scene>, tune::Task, Survey)>),
 }
 
 pub(super) struct Worker {
@@ -289,8 +293,8 @@ impl Worker {
                 }
                 Task::Pass => self.refine(render, &mut at_rest),
                 Task::Search(search) => {
-                    let (task, survey) = *search;
-                    Measuring::new(self, render, &mut at_rest, word, survey).run(&task);
+                    let (scene, task, survey) = *search;
+                    Measuring::new(self, render, &mut at_rest, word, scene, survey).run(&task);
                     false
                 }
             };
@@ -373,14 +377,25 @@ impl Worker {
 mod tests {
     use super::*;
     use crate::app::survey::End;
+    use crate::scene::{LoadOptions, builtin, load_text};
     use crate::settings::Supersample;
+    use std::sync::LazyLock;
     use std::sync::atomic::{AtomicUsize, Ordering};
     use std::sync::mpsc::{Receiver, channel};
+
+    /// An empty scene.
+    fn nowhere() -> Arc<Scene> {
+        static NOWHERE: LazyLock<Arc<Scene>> = LazyLock::new(|| {
+            Arc::new(load_text("nowhere.json", r#"{"version": 1}"#, &LoadOptions::default()).expect("right"))
+        });
+        NOWHERE.clone()
+    }
 
     fn job(width: u32, x: f32) -> Job {
         let mut camera = Camera::default();
         camera.eye.x = x;
-        Job { camera, settings: Settings::default(), width, height: 4, lowering: Lowering::NONE }
+        let settings = Settings::default();
+        Job { scene: nowhere(), camera, settings, width, height: 4, lowering: Lowering::NONE }
     }
 
     fn start(
@@ -483,16 +498,23 @@ mod tests {
 
     #[test]
     fn a_view_at_rest_becomes_supersample_16_byte_for_byte_and_then_nothing_is_traced() {
-        let scene = Arc::new(crate::scene::builtin(&crate::scene::LoadOptions::default()).expect("it loads"));
+        let scene = Arc::new(builtin(&LoadOptions::default()).expect("it loads"));
         let camera = scene.cameras[0].camera;
         for settings in [Settings::exact(), Settings { supersample: Supersample::Grid { side: 2 }, ..Settings::fast() }]
         {
             let (width, height) = (80, 45);
             let (sender, words) = channel();
             let word = move |word| sender.send(word).unwrap_or(());
-            let tracer = Tracer::start(scene.clone(), Duration::ZERO, word).expect("a thread starts");
+            let tracer = Tracer::start(Duration::ZERO, word).expect("a thread starts");
             let at_rest = Settings { refine_at_rest: true, ..settings.clone() };
-            tracer.post(Job { camera, settings: at_rest, width, height, lowering: Lowering::NONE });
+            tracer.post(Job {
+                scene: Arc::clone(&scene),
+                camera,
+                settings: at_rest,
+                width,
+                height,
+                lowering: Lowering::NONE,
+            });
             let frames = frames(&tracer, &words);
             let picture = |supersample: Supersample| {
                 let mut film = Film::new(width, height, Planes::default());
@@ -591,7 +613,7 @@ mod tests {
     }
 
     /// A search on a small picture.
-    fn search() -> (tune::Task, Survey) {
+    fn search() -> (Arc<Scene>, tune::Task, Survey) {
         let bound = tune::Bound::parse("flip=0.01").expect("right");
         let task = tune::Task {
             cameras: vec![Camera::default()],
@@ -602,7 +624,7 @@ mod tests {
             also: Vec::new(),
             budget: SOON,
         };
-        (task, Survey::new(Camera::default(), bound))
+        (nowhere(), task, Survey::new(Camera::default(), bound))
     }
 
     /// Waits for the end of a search; the widths of the frames that came meanwhile.
@@ -626,8 +648,8 @@ mod tests {
             FrameStats { completed: true, ..FrameStats::default() }
         };
         let (tracer, words) = start(render, CancelToken::default());
-        let (task, survey) = search();
-        tracer.search(task, survey);
+        let (scene, task, survey) = search();
+        tracer.search(scene, task, survey);
         assert_eq!(begins.recv_timeout(SOON), Ok(16));
         tracer.post(job(4, 0.0));
         let (end, widths) = end_of(&tracer, &words);
@@ -650,8 +672,8 @@ mod tests {
             FrameStats { completed: false, ..FrameStats::default() }
         };
         let (tracer, words) = start(render, cancel);
-        let (task, survey) = search();
-        tracer.search(task, survey);
+        let (scene, task, survey) = search();
+        tracer.search(scene, task, survey);
         assert_eq!(begins.recv_timeout(SOON), Ok(16));
         tracer.stop_search();
         assert_eq!(end_of(&tracer, &words).0, End::Stopped);

@@ -3,13 +3,14 @@
 
 use super::values;
 use clap::{Arg, ArgAction, Command, crate_version, value_parser};
+use raywalk::app::screenshot;
 use raywalk::math::simd;
 use raywalk::measure::metric::METRICS;
 use raywalk::measure::tune::Bound;
 use raywalk::picture::FORMATS;
 use raywalk::scene::Limits;
 use raywalk::settings::{Kind, PRESETS, ROWS, Row, Settings};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The whole command line.
 pub fn command() -> Command {
@@ -25,6 +26,14 @@ pub fn command() -> Command {
         .args_conflicts_with_subcommands(true)
         .subcommand_precedence_over_arg(true)
         .max_term_width(120);
+    let view =
+        view.arg(switch("no-config", "Neither use nor change what the last window left (settings, size, place)")).arg(
+            Arg::new("screenshots")
+                .long("screenshots")
+                .value_name("NAME.png")
+                .value_parser(|name: &str| screenshot::name(Path::new(name)))
+                .help("Where F12 puts pictures; %04d stands for their number [default: raywalk-%04d.png]"),
+        );
     with_shared(view).subcommands([render(), bench(), tune(), info(), compare()])
 }
 

@@ -6,8 +6,8 @@ use clap::ArgMatches;
 use glam::Vec3;
 use raywalk::picture::MAX_PIXELS;
 use raywalk::render::Planes;
-use raywalk::scene::Limits;
-use raywalk::settings::{PRESETS, ROWS, Settings, Visibility};
+use raywalk::scene::{Limits, Progress};
+use raywalk::settings::{PRESETS, Preset, ROWS, Settings, Visibility};
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -19,6 +19,8 @@ pub struct Reading {
     pub limits: Limits,
     pub strict: bool,
     pub quiet: bool,
+    /// Is told how far that has come.
+    pub progress: Progress,
 }
 
 /// What of a camera the command line changes.
@@ -61,6 +63,7 @@ impl Reading {
             limits,
             strict: asked.get_flag("strict"),
             quiet: asked.get_flag("quiet"),
+            progress: Progress::default(),
         })
     }
 }
@@ -98,15 +101,18 @@ impl Options {
             stats: asked.get_one("stats").cloned(),
             // Of `render` alone, which has one value for it.
             reference: asked.try_contains_id("reference").is_ok_and(|given| given).then_some(Visibility::Full),
-            settings: settings(asked, preset)?,
+            settings: with_flags(asked, named_preset(asked).map_or(preset, |preset| preset.settings)())?,
         })
     }
 }
 
-/// The preset, then every flag that was given: a flag beats the preset, whatever their order.
-fn settings(asked: &ArgMatches, preset: fn() -> Settings) -> Result<Settings, Failure> {
-    let named = asked.get_one::<String>("preset").and_then(|name| PRESETS.iter().find(|p| p.name == name));
-    let mut settings = named.map_or(preset, |preset| preset.settings)();
+/// The preset that was named.
+pub fn named_preset(asked: &ArgMatches) -> Option<&'static Preset> {
+    asked.get_one::<String>("preset").and_then(|name| PRESETS.iter().find(|preset| preset.name == name))
+}
+
+/// `settings` with every flag that was given: a flag beats the preset, whatever their order.
+pub fn with_flags(asked: &ArgMatches, mut settings: Settings) -> Result<Settings, Failure> {
     for row in ROWS {
         if let Some(text) = asked.get_one::<String>(row.name) {
             (row.set)(&mut settings, text).map_err(|message| Failure::Usage(format!("--{}: {message}", row.name)))?;

@@ -1,6 +1,7 @@
-//! A progress bar for long runs, on a terminal only.
+//! A progress bar for long runs and loads, on a terminal only.
 
 use indicatif::{ProgressBar, ProgressStyle};
+use raywalk::scene;
 use std::io::{self, IsTerminal};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
@@ -14,6 +15,8 @@ const REDRAW: Duration = Duration::from_millis(200);
 
 /// What a bar shows of frames.
 const OF_FRAMES: &str = "{spinner} {wide_bar} frame {pos}/{len}, {elapsed}, {eta} to go";
+/// What it shows of a load.
+const OF_LOAD: &str = "{spinner} {msg}, {elapsed}";
 /// What it shows of any other steps.
 const OF_STEPS: &str = "{spinner} {wide_bar} {percent}% {msg}, {elapsed}, {eta} to go";
 
@@ -23,8 +26,17 @@ pub struct Progress {
     done: Arc<AtomicU64>,
     /// What is in work.
     what: Arc<Mutex<String>>,
-    /// The thread that draws, and the channel whose end stops it. A thread of its own: one frame may take minutes.
-    drawing: Option<(Sender<()>, JoinHandle<()>)>,
+    /// Clears the bar when it is dropped.
+    _drawing: Option<Drawing>,
+}
+
+/// A bar on the terminal; dropping it clears it.
+#[derive(Debug)]
+pub struct Drawing {
+    /// Its end stops the thread.
+    stop: Option<Sender<()>>,
+    /// A thread of its own: one frame may take minutes.
+    thread: Option<JoinHandle<()>>,
 }
 
 impl Progress {
@@ -40,13 +52,12 @@ impl Progress {
 
     fn over(steps: u64, template: &'static str, quiet: bool) -> Self {
         let (done, what) = (Arc::new(AtomicU64::new(0)), Arc::<Mutex<String>>::default());
-        let visible = !quiet && io::stderr().is_terminal();
-        let drawing = visible.then(|| {
-            let (stop, stopped) = mpsc::channel();
-            let (count, what) = (Arc::clone(&done), Arc::clone(&what));
-            (stop, thread::spawn(move || draw(steps, template, &count, &what, &stopped)))
+        let (count, text) = (Arc::clone(&done), Arc::clone(&what));
+        let drawing = Drawing::start(steps, template, quiet, move |bar| {
+            bar.set_message(text.lock().unwrap_or_else(PoisonError::into_inner).clone());
+            bar.set_position(count.load(Ordering::Relaxed));
         });
-        Self { done, what, drawing }
+        Self { done, what, _drawing: drawing }
     }
 
     /// One more frame is done.
@@ -61,7 +72,29 @@ impl Progress {
     }
 }
 
-fn draw(steps: u64, template: &str, done: &AtomicU64, what: &Mutex<String>, stopped: &mpsc::Receiver<()>) {
+impl Drawing {
+    /// How far a load has come; nothing if `quiet` or stderr is no terminal.
+    pub fn of_load(load: &scene::Progress, quiet: bool) -> Option<Self> {
+        let load = load.clone();
+        Self::start(0, OF_LOAD, quiet, move |bar| bar.set_message(load.step().to_string()))
+    }
+
+    fn start(
+        steps: u64,
+        template: &'static str,
+        quiet: bool,
+        tell: impl Fn(&ProgressBar) + Send + 'static,
+    ) -> Option<Self> {
+        if quiet || !io::stderr().is_terminal() {
+            return None;
+        }
+        let (stop, stopped) = mpsc::channel();
+        let thread = thread::spawn(move || draw(steps, template, tell, &stopped));
+        Some(Self { stop: Some(stop), thread: Some(thread) })
+    }
+}
+
+fn draw(steps: u64, template: &str, tell: impl Fn(&ProgressBar), stopped: &mpsc::Receiver<()>) {
     if stopped.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
         return;
     }
@@ -71,16 +104,15 @@ fn draw(steps: u64, template: &str, done: &AtomicU64, what: &Mutex<String>, stop
     }
     while stopped.recv_timeout(REDRAW) == Err(RecvTimeoutError::Timeout) {
         bar.tick();
-        bar.set_message(what.lock().unwrap_or_else(PoisonError::into_inner).clone());
-        bar.set_position(done.load(Ordering::Relaxed));
+        tell(&bar);
     }
     bar.finish_and_clear();
 }
 
-impl Drop for Progress {
+impl Drop for Drawing {
     fn drop(&mut self) {
-        if let Some((stop, thread)) = self.drawing.take() {
-            drop(stop);
+        drop(self.stop.take());
+        if let Some(thread) = self.thread.take() {
             // A bar that failed to draw is no reason to fail.
             let _ = thread.join();
         }

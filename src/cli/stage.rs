@@ -1,6 +1,7 @@
 //! What is rendered: the scene from disk, the camera in it, and what the command line leaves to the scene.
 
 use super::options::{Options, Reading, View, check_size};
+use super::progress::Drawing;
 use super::values::Size;
 use super::{Failure, stdout};
 use raywalk::scene::{self, Camera, LoadOptions, Scene, SceneError};
@@ -9,7 +10,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// The picture's size where neither the command line nor the scene gives one.
-const DEFAULT_SIZE: Size = Size { width: 1280, height: 720 };
+pub const DEFAULT_SIZE: Size = Size { width: 1280, height: 720 };
 
 /// A scene that was read.
 #[derive(Debug)]
@@ -32,7 +33,9 @@ pub struct Stage {
 
 /// Reads the scene and tells its warnings on stderr, unless they were not wanted.
 pub fn load(reading: &Reading) -> Result<Loaded, SceneError> {
-    let options = LoadOptions { strict: reading.strict, limits: reading.limits.clone() };
+    let options =
+        LoadOptions { strict: reading.strict, limits: reading.limits.clone(), progress: reading.progress.clone() };
+    let _shown = Drawing::of_load(&reading.progress, reading.quiet);
     let start = Instant::now();
     let scene = match &reading.scene {
         Some(file) => scene::load(file, &options)?,

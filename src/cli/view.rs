@@ -2,54 +2,143 @@
 
 use super::frames::Frames;
 use super::interrupt::Interrupt;
-use super::options::Options;
+use super::options::{Options, named_preset, with_flags};
 use super::output::{self, Output};
-use super::stage::Stage;
+use super::stage::{DEFAULT_SIZE, Loaded, Stage};
+use super::values::Size;
 use super::{Failure, render, stdout};
 use clap::ArgMatches;
-use raywalk::app::{self, AppError, AppOptions};
-use raywalk::picture::WriteOptions;
+use raywalk::app::config::{Config, Store};
+use raywalk::app::scenes::{Arrival, Failed, Load, Outcome};
+use raywalk::app::{self, AppError, AppOptions, Opening, screenshot};
+use raywalk::picture::{NumberedName, WriteOptions};
+use raywalk::scene::LoadOptions;
 use raywalk::settings::Settings;
 use std::path::Path;
-use std::sync::Arc;
+use std::time::Duration;
 
 /// What is written where no window can be opened.
 const PICTURE: &str = "raywalk.png";
+/// A scene that is loaded sooner needs no window to wait in.
+const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Opens the window, or else renders one frame.
 pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     let mut options = Options::of(asked, Settings::balanced)?;
-    // A preset says nothing of it, and only a window can rest.
-    if asked.value_source("refine-at-rest").is_none() {
-        options.settings.refine_at_rest = true;
-    }
+    let (config, store) = config(asked, &options);
+    let own = config.start_settings();
+    let start = named_preset(asked).map_or_else(|| own.clone(), |preset| (preset.settings)().in_place_of(&own));
+    options.settings = with_flags(asked, start)?;
+    let screenshots = screenshots(asked, &config, options.reading.quiet);
     output::check_planes(Some(Path::new(PICTURE)), options.planes)?;
     let frames = Frames::of(&options)?;
     let interrupt = Interrupt::listen()?;
-    let stage = Stage::set(&options)?;
+    let load = load(&options)?;
+    let size = options.view.size.unwrap_or(DEFAULT_SIZE);
+    let file = options.reading.scene.clone().unwrap_or_default();
+    let (opening, size) = match load.wait(PATIENCE) {
+        Some(outcome) => {
+            let arrival = arrived(outcome)?;
+            let size = arrival.size.unwrap_or((size.width, size.height));
+            (Opening::Scene(arrival), size)
+        }
+        None => (Opening::Loading(load.clone(), file), (size.width, size.height)),
+    };
     let window = AppOptions {
-        scene: Arc::clone(&stage.loaded.scene),
-        camera: frames.camera(frames.range.start, &stage.camera)?,
-        settings: stage.settings.clone(),
-        size: (stage.size.width, stage.size.height),
+        opening: opening.clone(),
+        load: LoadOptions {
+            strict: options.reading.strict,
+            limits: options.reading.limits.clone(),
+            ..LoadOptions::default()
+        },
+        settings: options.settings.clone(),
+        size,
+        as_before: options.view.size.is_none(),
+        config,
+        store,
+        screenshots,
     };
     match app::run(window) {
         Err(AppError::NoDisplay(reason)) => {
+            let arrival = match opening {
+                Opening::Scene(arrival) => arrival,
+                Opening::Loading(load, _) => arrived(load.wait_to_the_end())?,
+            };
             // A still picture has no hurry: it is what `render` makes of the same words.
             let options = Options::of(asked, Settings::exact)?;
-            picture(&stage.with_settings(&options.settings), &frames.first(), &options, &interrupt)?;
+            picture(&stage_of(arrival, &options), &frames.first(), &options, &interrupt)?;
             let reason = reason.trim_end_matches('.');
             stdout::note(&format!("no window ({reason}): rendered one frame to {PICTURE}"));
             Ok(())
         }
+        Err(AppError::NoScene(failed)) => Err(failure(failed)),
         Err(error) => Err(error.into()),
-        Ok(_) => {
+        Ok(end) => {
+            if !options.reading.quiet {
+                end.warnings.iter().for_each(|warning| stdout::note(&format!("warning: {warning}")));
+            }
             if options.stats.is_some() && !options.reading.quiet {
                 stdout::note("warning: a walk has no --stats; raywalk render writes them");
             }
             Ok(())
         }
     }
+}
+
+/// Starts to load what the window opens on.
+fn load(options: &Options) -> Result<Load, Failure> {
+    let (options, frames) = (options.clone(), Frames::of(options)?);
+    let progress = options.reading.progress.clone();
+    let files = progress.clone();
+    Ok(Load::start(progress, move || {
+        let stage = Stage::set(&options)?;
+        let Size { width, height } = stage.size;
+        Ok(Arrival {
+            camera: frames.camera(frames.range.start, &stage.camera)?,
+            scene: stage.loaded.scene,
+            file: options.reading.scene,
+            files: files.files(),
+            size: Some((width, height)),
+        })
+    }))
+}
+
+fn arrived(outcome: Outcome) -> Result<Arrival, Failure> {
+    outcome.map_err(failure)
+}
+
+/// What a load says that failed, with its exit code.
+fn failure(failed: Failed) -> Failure {
+    failed.downcast::<Failure>().map_or_else(|other| Failure::Run(other.to_string()), |failure| *failure)
+}
+
+/// What the window would have shown, to be rendered.
+fn stage_of(arrival: Arrival, options: &Options) -> Stage {
+    let (width, height) = arrival.size.unwrap_or((DEFAULT_SIZE.width, DEFAULT_SIZE.height));
+    let loaded = Loaded { scene: arrival.scene, total_ms: 0.0 };
+    let size = Size { width, height };
+    let stage = Stage { loaded, camera: arrival.camera, size, settings: Settings::default() };
+    stage.with_settings(&options.settings)
+}
+
+/// What the last window left, and where this one's is kept; a file that cannot be read is told of.
+fn config(asked: &ArgMatches, options: &Options) -> (Config, Option<Store>) {
+    let path = Store::usual_path().filter(|_| !asked.get_flag("no-config"));
+    let Some((store, config, warning)) = path.map(Store::open) else { return (Config::default(), None) };
+    if let (Some(warning), false) = (warning, options.reading.quiet) {
+        stdout::note(&format!("warning: {warning}"));
+    }
+    (config, Some(store))
+}
+
+/// Where screenshots go: as typed, else as kept, else the usual name in the current folder.
+fn screenshots(asked: &ArgMatches, config: &Config, quiet: bool) -> NumberedName {
+    let kept = config.screenshots.as_deref().map(|name| screenshot::name(Path::new(name)));
+    if let (Some(Err(message)), false) = (&kept, quiet) {
+        stdout::note(&format!("warning: screenshots in the kept settings: {message}"));
+    }
+    let usual = || NumberedName::new(Path::new(screenshot::USUAL_NAME));
+    asked.get_one::<NumberedName>("screenshots").cloned().or(kept.and_then(Result::ok)).unwrap_or_else(usual)
 }
 
 fn picture(stage: &Stage, frames: &Frames, options: &Options, interrupt: &Interrupt) -> Result<(), Failure> {

@@ -205,6 +205,11 @@ impl Geometry {
     /// Sorts parts into blocks and builds the tree. Parts come in ascending order of their [`PrimitiveId`];
     /// those without extent are dropped and counted.
     pub fn build(parts: Vec<Part>) -> Self {
+        Self::build_while(parts, &|| true).unwrap_or_default()
+    }
+
+    /// As [`build`](Self::build), but gives up soon after `wanted` says no.
+    pub fn build_while(parts: Vec<Part>, wanted: &dyn Fn() -> bool) -> Option<Self> {
         let mut geometry = Self::default();
         let (packed, holes) = geometry.pack(parts);
         let unplaced = Slot { kind: PrimitiveKind::Plane, block: u32::MAX, place: 0 };
@@ -215,7 +220,10 @@ impl Geometry {
         let boxes: Vec<Aabb> = finite.par_iter().map(|&i| packed[i as usize].bounds()).collect();
         let kinds: Vec<PrimitiveKind> = finite.par_iter().map(|&i| packed[i as usize].kind()).collect();
         geometry.bounds = boxes.iter().fold(Aabb::EMPTY, |a, &b| a.union(b));
-        let (bvh, mut leaves) = bvh::build(&boxes, &kinds).unzip();
+        let (bvh, mut leaves) = bvh::build(&boxes, &kinds, wanted).unzip();
+        if !wanted() {
+            return None;
+        }
         let leaves = leaves.get_or_insert_default();
         for leaf in &mut *leaves {
             leaf.rename(&finite);
@@ -228,7 +236,7 @@ impl Geometry {
             geometry.holes[slot.block as usize * BLOCK + usize::from(slot.place)] = holes;
         }
         geometry.bvh = bvh.filter(|bvh| bvh.leaves >= MIN_BLOCKS_FOR_TREE);
-        geometry
+        Some(geometry)
     }
 
     /// Packs parts and keeps what else is to be known of them. The holes wait for their places.

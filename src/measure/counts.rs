@@ -26,8 +26,7 @@ impl SceneCounts {
     /// Counts `scene`.
     pub fn of(scene: &Scene) -> Self {
         let texels: usize = scene.textures.iter().map(texture_bytes).sum();
-        let tables =
-            scene.objects.capacity() * size_of::<Object>() + scene.materials.capacity() * size_of::<Material>();
+        let tables = scene.objects.len() * size_of::<Object>() + scene.materials.capacity() * size_of::<Material>();
         Self {
             scene_bytes: (scene.geometry.bytes() + texels + tables) as u64,
             triangles: (scene.geometry.count(PrimitiveKind::Triangle) + scene.geometry.count(PrimitiveKind::Cutout))

@@ -1,6 +1,6 @@
 //! The scene shown when none is named, embedded in the program.
 
-use super::format::{LoadOptions, load_embedded};
+use super::format::{LoadOptions, load_embedded, load_text};
 use super::{Scene, SceneError};
 
 /// A file of `scenes/` under its name there.
@@ -36,6 +36,16 @@ const FILES: &[(&str, &[u8])] = &[
 /// Only what `options` ask for beyond the defaults, such as lower limits.
 pub fn builtin(options: &LoadOptions) -> Result<Scene, SceneError> {
     load_embedded(FILES[0].0, FILES, options)
+}
+
+/// An empty scene, to be shown where there is none yet.
+///
+/// # Errors
+/// None, unless the program has a fault.
+pub fn nothing() -> Result<Scene, SceneError> {
+    let text = r#"{ "version": 1, "render": { "background": 0.012 } }"#;
+    let scene = load_text("nothing.json", text, &LoadOptions::default())?;
+    Ok(Scene { name: "nothing".to_owned(), warnings: Vec::new(), ..scene })
 }
 
 #[cfg(test)]

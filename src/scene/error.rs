@@ -1,5 +1,6 @@
 //! What can be wrong with a scene file: what, where, and what to do.
 
+use super::files::CANCELLED;
 use std::path::PathBuf;
 
 /// A place in a scene file.
@@ -46,6 +47,20 @@ pub enum SceneError {
         /// Where.
         place: Place,
         /// What is wrong, and what would be right.
+        message: String,
+    },
+    /// It was ended early by [`Progress::cancel`](super::Progress::cancel).
+    #[error("{place}: {CANCELLED}")]
+    Cancelled {
+        /// The scene.
+        place: Place,
+    },
+    /// A reader gave up in a way that it never should.
+    #[error("{place}: cannot be read, since the program has a fault: {message}; please report it with this file")]
+    Broken {
+        /// The scene.
+        place: Place,
+        /// What the fault says of itself.
         message: String,
     },
     /// No reader for this kind of file.

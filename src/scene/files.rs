@@ -2,11 +2,16 @@
 
 use super::Limits;
 use super::limits::exceeded;
+use super::progress::{Progress, Stamp};
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, Read};
 use std::mem;
 use std::path::{Path, PathBuf};
+
+/// What a load says that was ended early, wherever it was: [`SceneError::Cancelled`](super::SceneError::Cancelled) in the
+/// end.
+pub const CANCELLED: &str = "loading was cancelled";
 
 /// Why a file could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -23,6 +28,9 @@ pub enum FileError {
     /// More bytes than the limit allows.
     #[error("the scene's files have {}", exceeded("file-bytes", *.0))]
     TooLarge(u64),
+    /// The load was ended early.
+    #[error("{CANCELLED}")]
+    Cancelled,
 }
 
 /// Where files come from.
@@ -42,6 +50,7 @@ pub struct Files {
     folder: PathBuf,
     bytes_left: u64,
     limit: u64,
+    progress: Progress,
 }
 
 impl Files {
@@ -61,7 +70,18 @@ impl Files {
     }
 
     fn new(source: Source, folder: PathBuf, limits: &Limits) -> Self {
-        Self { source, folder, bytes_left: limits.file_bytes, limit: limits.file_bytes }
+        let progress = Progress::default();
+        Self { source, folder, bytes_left: limits.file_bytes, limit: limits.file_bytes, progress }
+    }
+
+    /// The same, with `progress` told what is looked at.
+    pub fn told_to(self, progress: &Progress) -> Self {
+        Self { progress: progress.clone(), ..self }
+    }
+
+    /// Who is told what is looked at.
+    pub fn progress(&self) -> &Progress {
+        &self.progress
     }
 
     /// From now on names are relative to `folder`, that of a located file; gives the folder up to now, at first the
@@ -84,19 +104,32 @@ impl Files {
                     return Err(FileError::Outside);
                 }
                 let path = self.folder.join(relative);
-                // Asked first, since it takes a fraction of the time where there is nothing.
-                path.symlink_metadata()?;
-                let path = path.canonicalize()?;
+                // The link is asked first, since it takes a fraction of the time where there is nothing.
+                let path = path.symlink_metadata().and_then(|_| path.canonicalize());
+                let path = path.inspect_err(|_| self.missed(scene, relative))?;
                 if path.starts_with(scene) { Ok(path) } else { Err(FileError::Outside) }
             }
+        }
+    }
+
+    /// Notes what was looked for in vain, if it may yet come to be there.
+    fn missed(&self, scene: &Path, relative: &Path) {
+        let path = self.folder.join(relative);
+        let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else { return };
+        if let Some(folder) = folder.canonicalize().ok().filter(|folder| folder.starts_with(scene)) {
+            self.progress.saw(&folder.join(name), None);
         }
     }
 
     /// The contents of a located file.
     ///
     /// # Errors
-    /// It cannot be read, is no regular file, or has more bytes than are left of the limit.
+    /// It cannot be read, is no regular file, or has more bytes than are left of the limit; or the load was cancelled.
     pub fn read(&mut self, path: &Path) -> Result<Cow<'static, [u8]>, FileError> {
+        if self.progress.is_cancelled() {
+            return Err(FileError::Cancelled);
+        }
+        self.progress.begin(format!("reading {}", path.file_name().unwrap_or_default().display()), 0);
         let bytes = match self.source {
             Source::Embedded(files) => {
                 let file = files.iter().find(|(name, _)| Path::new(name) == path);
@@ -111,7 +144,8 @@ impl Files {
 
     fn read_regular(&self, path: &Path) -> Result<Vec<u8>, FileError> {
         // Asked before opening: opening a pipe would wait for its other end.
-        let metadata = path.metadata()?;
+        let metadata = path.metadata().inspect_err(|_| self.progress.saw(path, None))?;
+        self.progress.saw(path, Some(Stamp::of_metadata(&metadata)));
         if !metadata.is_file() {
             return Err(FileError::NotRegular);
         }
@@ -120,8 +154,28 @@ impl Files {
         }
         let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
         // The file may have grown since; one byte more than allowed is enough to notice.
-        File::open(path)?.take(self.bytes_left.saturating_add(1)).read_to_end(&mut bytes)?;
+        let file = Cancellable { file: File::open(path)?, progress: &self.progress };
+        file.take(self.bytes_left.saturating_add(1)).read_to_end(&mut bytes)?;
         Ok(bytes)
+    }
+}
+
+/// Most bytes read at once: a cancelled load does not wait for a slow disk any longer than that takes.
+const CHUNK: usize = 4 << 20;
+
+/// A file that is read until it is cancelled.
+struct Cancellable<'a> {
+    file: File,
+    progress: &'a Progress,
+}
+
+impl Read for Cancellable<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.progress.is_cancelled() {
+            return Err(io::Error::other(CANCELLED));
+        }
+        let room = buffer.len().min(CHUNK);
+        self.file.read(&mut buffer[..room])
     }
 }
 

@@ -12,28 +12,34 @@ pub mod desc;
 pub mod error;
 pub mod files;
 pub mod format;
+pub mod guard;
 pub mod light;
 pub mod limits;
 pub mod material;
 pub mod object;
 pub mod path;
+pub mod pick;
+pub mod progress;
 pub mod texels;
 pub mod texture;
 
-pub use builtin::builtin;
+pub use builtin::{builtin, nothing};
 pub use camera::Camera;
 pub use error::{SceneError, Warning};
-pub use format::{FORMATS, LoadOptions, load, load_embedded, load_text, read_camera};
+pub use format::{FORMATS, Format, LoadOptions, load, load_embedded, load_text, read_camera};
 pub use light::Light;
 pub use limits::Limits;
 pub use material::Material;
 pub use object::Object;
 pub use path::CameraPath;
+pub use progress::Progress;
 pub use texture::Texture;
 
 use crate::geometry::{Aabb, Geometry};
 use crate::settings::{Exposure, ToneMap};
 use glam::Vec3;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A camera that the scene file names.
 #[derive(Clone, Debug)]
@@ -88,15 +94,15 @@ pub struct Scene {
     pub generation: u64,
     /// Milliseconds that sorting its shapes and building the tree took.
     pub build_ms: f64,
-    /// Shapes and the tree over them.
-    pub geometry: Geometry,
+    /// Shapes and the tree over them. Shared, as are the objects, by scenes that differ in their lights alone.
+    pub geometry: Arc<Geometry>,
     /// Leaf objects, depth first in file order; a hit's object index points here.
-    pub objects: Vec<Object>,
+    pub objects: Arc<[Object]>,
     /// Materials; objects point here. Never empty.
     pub materials: Vec<Material>,
     /// Textures; materials point here.
     pub textures: Vec<Texture>,
-    /// Lights. Empty only with `headlight`.
+    /// Lights. As it is loaded, a scene without any has `headlight`.
     pub lights: Vec<Light>,
     /// The file has no light: one at the eye is added to every frame (irradiance factor 1, no falloff).
     pub headlight: bool,
@@ -116,6 +122,25 @@ impl Scene {
         build::finite_bounds(&self.objects)
     }
 
+    /// The same place in the light of `lights`, exposed as before: they may be none, and then there is none at the eye
+    /// either.
+    pub fn with_lights(&self, lights: Vec<Light>) -> Self {
+        Self {
+            name: self.name.clone(),
+            generation: next_generation(),
+            geometry: Arc::clone(&self.geometry),
+            objects: Arc::clone(&self.objects),
+            materials: self.materials.clone(),
+            textures: self.textures.clone(),
+            lights,
+            headlight: false,
+            cameras: self.cameras.clone(),
+            render: self.render.clone(),
+            warnings: self.warnings.clone(),
+            ..*self
+        }
+    }
+
     /// The stops that `exposure` means for this scene.
     pub fn stops(&self, exposure: Exposure) -> f32 {
         match exposure {
@@ -127,4 +152,17 @@ impl Scene {
             },
         }
     }
+}
+
+/// A scene is equal to itself only.
+impl PartialEq for Scene {
+    fn eq(&self, other: &Self) -> bool {
+        self.generation == other.generation
+    }
+}
+
+/// A number that no scene had before.
+fn next_generation() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
 }

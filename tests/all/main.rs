@@ -20,6 +20,7 @@ mod our_scenes;
 mod overlay;
 #[path = "../common/picture_bits.rs"]
 mod picture_bits;
+mod progress;
 #[path = "../common/random.rs"]
 mod random;
 mod readme;

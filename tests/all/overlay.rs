@@ -3,16 +3,22 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use raywalk::app::history::History;
+use raywalk::app::input::HELP;
+use raywalk::app::inspection::Inspection;
 use raywalk::app::labels::Labels;
+use raywalk::app::lighting::Dial;
 use raywalk::app::overlay::{self, Change, Notices, Showing, Shown, Tuning, View, theme};
+use raywalk::app::scenes::{Failure, Loading, Report, Wish};
 use raywalk::app::survey::{End, Point, Survey};
-use raywalk::geometry::Geometry;
+use raywalk::geometry::{Aabb, Geometry};
 use raywalk::math::simd;
 use raywalk::measure::metric::{METRICS, metric};
 use raywalk::measure::tune::Bound;
 use raywalk::render::FrameStats;
+use raywalk::scene::progress::Step;
 use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene};
 use raywalk::settings::{Kind, PRESETS, ROWS, Settings, Supersample, row};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 fn scene() -> Scene {
@@ -21,9 +27,9 @@ fn scene() -> Scene {
         name: "room".to_owned(),
         format: "JSON",
         generation: 1,
-        geometry: Geometry::build(Vec::new()),
+        geometry: Arc::new(Geometry::build(Vec::new())),
         build_ms: 0.0,
-        objects: Vec::new(),
+        objects: Vec::new().into(),
         materials: vec![Material::default_phong()],
         textures: Vec::new(),
         lights: Vec::new(),
@@ -40,10 +46,14 @@ struct Panel {
     scene: Scene,
     settings: Settings,
     history: History,
+    stats: FrameStats,
     shown: Shown,
     showing: Showing,
     bound: Bound,
     survey: Option<Survey>,
+    report: Report<'static>,
+    lights: Vec<Dial>,
+    inspection: Option<Inspection>,
     notices: Notices,
     labels: Labels,
     changes: Vec<Change>,
@@ -55,15 +65,29 @@ impl Panel {
         let shown = Shown::default();
         let (history, showing) = (History::default(), Showing::AsSet);
         let bound = Bound::parse("flip=0.01").expect("right");
-        let (notices, labels, changes) = (Notices::default(), Labels::default(), Vec::new());
-        Self { scene: scene(), settings, history, shown, showing, bound, survey: None, notices, labels, changes }
+        Self {
+            scene: scene(),
+            settings,
+            history,
+            stats: FrameStats::default(),
+            shown,
+            showing,
+            bound,
+            survey: None,
+            report: Report::default(),
+            lights: Vec::new(),
+            inspection: None,
+            notices: Notices::default(),
+            labels: Labels::default(),
+            changes: Vec::new(),
+        }
     }
 
     fn show(&mut self, ui: &mut egui::Ui) {
         let view = View {
             scene: &self.scene,
             settings: &self.settings,
-            stats: &FrameStats::default(),
+            stats: &self.stats,
             history: &self.history,
             resting: false,
             size: (1280, 720),
@@ -74,12 +98,18 @@ impl Panel {
             fov: 60.0,
             sensitivity: 0.12,
             invert_look: false,
+            ui_scale: 1.0,
             tuning: Tuning {
                 bound: self.bound,
                 survey: self.survey.as_ref(),
                 drawn: &self.settings,
                 is_elsewhere: false,
             },
+            scenes: self.report.clone(),
+            lights: &self.lights,
+            inspection: self.inspection.as_ref(),
+            stands: Some(Camera::default()),
+            crosshair: true,
             notices: self.notices.current(),
             labels: &self.labels,
             activity: None,
@@ -125,6 +155,99 @@ fn every_setting_has_a_control_that_shows_its_promise() {
     let promises = ["same pixels", "approximate", "different picture"];
     let shown: usize = promises.iter().map(|promise| harness.query_all_by_label(promise).count()).sum();
     assert_eq!(shown, ROWS.len());
+}
+
+#[test]
+fn every_setting_tells_its_help_where_it_is_pointed_at() {
+    for row in ROWS {
+        let mut harness = Panel::new().harness();
+        let control = harness.get_all_by_label(row.name).next_back().expect("a control");
+        control.hover();
+        harness.run_steps(30);
+        harness.get_by_label(row.help);
+    }
+}
+
+#[test]
+fn the_help_names_every_key_setting_value_and_preset() {
+    let mut panel = Panel::new();
+    (panel.shown.panel, panel.shown.help) = (false, true);
+    let mut harness = panel.harness();
+    for (keys, what) in HELP {
+        assert!(harness.query_all_by_label(keys).count() > 0 && harness.query_all_by_label(what).count() > 0, "{keys}");
+    }
+    for row in ROWS {
+        harness.get_by_label(row.help);
+        assert!(harness.query_all_by_label(row.name).count() > 0, "{}", row.name);
+        if let Kind::Choice(choices) = &row.kind {
+            for group in choices.chunk_by(|a, b| a.promise == b.promise) {
+                let values: Vec<&str> = group.iter().map(|choice| choice.value).collect();
+                assert!(harness.query_all_by_label(&values.join(", ")).count() > 0, "{} {values:?}", row.name);
+            }
+        }
+    }
+    for preset in PRESETS {
+        harness.get_by_label(preset.help);
+    }
+    for word in ["Certified visibility", "Subsampling", "Caches", "1 % low"] {
+        harness.get_by_label(word);
+    }
+    harness.get_by_label("Close window").click();
+    harness.run();
+    assert_eq!(harness.state().changes, [Change::ToggleHelp]);
+}
+
+#[test]
+fn the_help_fits_in_small_windows() {
+    for size in [egui::vec2(300.0, 200.0), egui::vec2(60.0, 60.0), egui::vec2(1280.0, 720.0)] {
+        let mut panel = Panel::new();
+        panel.shown.help = true;
+        let mut harness = Harness::builder()
+            .with_size(size)
+            .with_context_setup(theme::apply)
+            .build_ui_state(|ui, panel: &mut Panel| panel.show(ui), panel);
+        harness.run();
+        let rect = harness.get_by_label("Help").rect();
+        assert!(rect.top() >= 0.0 && rect.left() >= 0.0, "{rect:?} in {size}");
+    }
+}
+
+#[test]
+fn panel_and_text_can_be_made_larger() {
+    let mut harness = Panel::new().harness();
+    let slider = harness.get_all_by_label("panel size").next_back().expect("a slider");
+    slider.set_value_accesskit(1.5);
+    harness.run();
+    assert_eq!(harness.state().changes, [Change::UiScale(1.5)]);
+}
+
+#[test]
+fn the_slowest_frames_are_told_of() {
+    let mut panel = Panel::new();
+    let start = Instant::now();
+    for i in 0..1000 {
+        panel.history.record(start + Duration::from_millis(8) * i, if i == 500 { 200.0 } else { 8.0 });
+    }
+    let harness = panel.harness();
+    harness.get_by_label("median 8.0   p95 8.0   p99 8.0   max 200.0 ms");
+    harness.get_by_label("1 % low 36.8 fps");
+}
+
+#[test]
+fn stages_and_rays_are_bars_that_tell_their_parts() {
+    let mut panel = Panel::new();
+    panel.stats.stages_ms.visibility = 3.0;
+    panel.stats.stages_ms.shadow = 1.0;
+    panel.stats.rays.primary = 1000;
+    panel.stats.rays.shadow = 3000;
+    let mut harness = panel.harness();
+    for (bar, told) in
+        [("CPU time", "visibility: 3.00 ms, 75 % of the CPU time"), ("rays", "shadow: 3 000, 75 % of the rays")]
+    {
+        harness.get_by_role_and_label(egui::accesskit::Role::Image, bar).hover();
+        harness.run_steps(30);
+        harness.get_by_label(told);
+    }
 }
 
 #[test]
@@ -370,4 +493,96 @@ fn a_front_without_a_find_says_so() {
     harness.state_mut().settings = Settings { stride: 2, ..Settings::balanced() };
     harness.run();
     harness.get_by_label("the settings on display are not measured");
+}
+
+/// What clicking on something asks for.
+fn wish(harness: &mut Harness<'_, Panel>, label: &str) -> Option<Wish> {
+    harness.get_by_label(label).click();
+    harness.run();
+    match harness.state_mut().changes.pop() {
+        Some(Change::Scenes(wish)) => Some(wish),
+        _ => None,
+    }
+}
+
+#[test]
+fn a_load_is_shown_and_can_be_stopped_even_where_the_overlay_is_hidden() {
+    let mut panel = Panel::new();
+    panel.shown.overlay = false;
+    let step = Step { what: "decoding textures".to_owned(), done: 3, of: 15 };
+    panel.report.loading = Some(Loading { name: "helmet.gltf".to_owned(), step, seconds: 2.0 });
+    let mut harness = panel.harness();
+    harness.run();
+    harness.get_by_label("Loading helmet.gltf");
+    harness.get_by_label("decoding textures: 3 of 15");
+    assert_eq!(wish(&mut harness, "Cancel"), Some(Wish::Cancel));
+}
+
+#[test]
+fn a_failure_says_where_and_stays_until_it_is_dismissed() {
+    let failure: &'static Failure = Box::leak(Box::new(Failure {
+        title: "room.json could not be opened".to_owned(),
+        message: "scenes/room.json:3:7 (/objects/0): missing radius".to_owned(),
+        file: Some("scenes/room.json".into()),
+    }));
+    let mut panel = Panel::new();
+    panel.report.failure = Some(failure);
+    let mut harness = panel.harness();
+    harness.run();
+    harness.get_by_label(&failure.title);
+    harness.get_by_label(&failure.message);
+    assert_eq!(wish(&mut harness, "Try again"), Some(Wish::OpenFile("scenes/room.json".into())));
+    assert_eq!(wish(&mut harness, "Dismiss"), Some(Wish::DismissFailure));
+}
+
+#[test]
+fn scenes_opened_before_are_opened_again() {
+    let recent: &'static [std::path::PathBuf] = Box::leak(Box::new(["/scenes/hall.glb".into(), "/b.obj".into()]));
+    let mut panel = Panel::new();
+    panel.report.recent = recent;
+    panel.report.blind = Some("too many watches");
+    let mut harness = panel.harness();
+    harness.get_by_label("Scene").click();
+    harness.run();
+    harness.get_by_label("changes on disk are not noticed: too many watches");
+    assert_eq!(wish(&mut harness, "hall.glb"), Some(Wish::OpenFile("/scenes/hall.glb".into())));
+    assert_eq!(wish(&mut harness, "Open..."), Some(Wish::Open));
+    assert_eq!(wish(&mut harness, "Reload"), Some(Wish::Reload));
+}
+
+#[test]
+fn lights_are_switched_one_by_one() {
+    let dial = |name: &str| Dial { name: name.to_owned(), on: true, intensity: 1.0, kelvin: 6500.0 };
+    let mut panel = Panel::new();
+    panel.lights = vec![dial("key"), Dial { intensity: 2.0, ..dial("fill") }];
+    let mut harness = panel.harness();
+    harness.get_by_label("Lights").click();
+    harness.run();
+    assert_eq!(harness.state().changes, [], "showing turns nothing");
+    harness.get_by_role_and_label(egui::accesskit::Role::CheckBox, "fill").click();
+    harness.run();
+    let off = Dial { on: false, intensity: 2.0, ..dial("fill") };
+    assert_eq!(harness.state_mut().changes.pop(), Some(Change::Light(1, off)));
+    harness.get_by_label("As in the file").click();
+    harness.run();
+    assert_eq!(harness.state_mut().changes.pop(), Some(Change::ResetLights));
+}
+
+#[test]
+fn a_thing_that_was_pointed_at_is_told_of() {
+    let mut panel = Panel::new();
+    panel.inspection = Some(Inspection {
+        title: "ball".to_owned(),
+        facts: vec![("distance", "4 m".to_owned()), ("material", "gold".to_owned())],
+        point: glam::Vec3::Z,
+        bounds: Aabb { min: glam::Vec3::NEG_ONE, max: glam::Vec3::ONE },
+    });
+    let mut harness = panel.harness();
+    harness.run();
+    for label in ["ball", "distance", "4 m", "gold"] {
+        harness.get_by_label(label);
+    }
+    harness.get_by_label("Close").click();
+    harness.run();
+    assert_eq!(harness.state_mut().changes.pop(), Some(Change::CloseInspection));
 }

@@ -71,7 +71,7 @@ fn built(scene: SceneDesc) -> Scene {
     let limits = Limits::default();
     let mut builder = SceneBuilder::new(Path::new("surfaces"), "made", Files::embedded(&[], &limits), limits);
     builder.add(scene, &mut Warnings::default()).unwrap();
-    builder.finish()
+    builder.finish().expect("nobody cancels")
 }
 
 fn light(position: Vec3) -> Light {

@@ -3,10 +3,15 @@
 //! Architecture invariant: nothing here knows of a window, a device or a thread, so all of it is tested
 //! without any of them.
 
+mod bars;
 mod controls;
 mod figures;
 mod graph;
+mod help;
+mod inspection;
+mod lights;
 pub mod notice;
+mod scenes;
 pub mod theme;
 mod tuning;
 
@@ -15,11 +20,13 @@ pub use tuning::{Tuning, usual_bound};
 
 use super::at_rest::SAMPLES;
 use super::history::History;
-use super::input::HELP;
+use super::inspection::Inspection;
 use super::labels::Labels;
+use super::lighting::Dial;
+use super::scenes::{Report, Wish};
 use crate::measure::tune::Bound;
 use crate::render::FrameStats;
-use crate::scene::Scene;
+use crate::scene::{Camera, Scene};
 use crate::settings::{PRESETS, Preset, Settings, row};
 use egui::{CollapsingHeader, RichText, Ui};
 
@@ -27,8 +34,6 @@ use egui::{CollapsingHeader, RichText, Ui};
 const WIDTH: f32 = 336.0;
 /// Distance from the window's edge in points.
 const MARGIN: f32 = 8.0;
-/// Most warnings of a scene that are listed.
-const WARNINGS: usize = 5;
 
 /// Everything the overlay shows.
 #[derive(Debug)]
@@ -59,8 +64,20 @@ pub struct View<'a> {
     pub sensitivity: f64,
     /// Mouse forward looks down.
     pub invert_look: bool,
+    /// How many times as large as usual panel and text are.
+    pub ui_scale: f32,
     /// What is known of other settings.
     pub tuning: Tuning<'a>,
+    /// What there is to say of scenes.
+    pub scenes: Report<'a>,
+    /// How each light is turned.
+    pub lights: &'a [Dial],
+    /// What was pointed at.
+    pub inspection: Option<&'a Inspection>,
+    /// From where the picture is seen, unless that is changing.
+    pub stands: Option<Camera>,
+    /// Whether the pointer is captured, and what it points at is in the middle.
+    pub crosshair: bool,
     /// What was just done or went wrong.
     pub notices: &'a [Notice],
     /// How keys are called on the user's keyboard.
@@ -112,18 +129,25 @@ pub struct Shown {
     pub overlay: bool,
     /// The panel below the status line.
     pub panel: bool,
+    /// The help window.
+    pub help: bool,
 }
 
 impl Default for Shown {
     fn default() -> Self {
-        Self { overlay: true, panel: true }
+        Self { overlay: true, panel: true, help: false }
     }
 }
 
 impl Shown {
     /// With the panel where it was not seen, and without it where it was.
     pub fn with_panel_toggled(self) -> Self {
-        Self { overlay: true, panel: !(self.overlay && self.panel) }
+        Self { overlay: true, panel: !(self.overlay && self.panel), ..self }
+    }
+
+    /// With the help where it was not seen, and without it where it was.
+    pub fn with_help_toggled(self) -> Self {
+        Self { overlay: true, help: !(self.overlay && self.help), ..self }
     }
 }
 
@@ -154,18 +178,32 @@ pub enum Change {
     Search(Bound),
     /// End the search.
     StopSearch,
+    /// Panel and text this many times as large as usual.
+    UiScale(f32),
     /// Open or close the panel.
     TogglePanel,
+    /// Something about scenes.
+    Scenes(Wish),
+    /// Turn the light of this index.
+    Light(usize, Dial),
+    /// Turn all lights back.
+    ResetLights,
+    /// Tell no longer of what was pointed at.
+    CloseInspection,
+    /// Open or close the help.
+    ToggleHelp,
 }
 
 /// Draws the overlay and returns what was asked for, in order.
 pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
     let mut changes = Vec::new();
+    scenes::boxes(ui, view, &mut changes);
     // They answer what was just asked for: whoever hides the rest wants to know all the same.
     notice::show(ui, view.notices);
     if !shown.overlay {
         return changes;
     }
+    inspection::show(ui, view, &mut changes);
     let available = ui.ctx().content_rect();
     egui::Area::new(egui::Id::unique("overlay"))
         .fixed_pos(available.min + egui::vec2(MARGIN, MARGIN))
@@ -187,6 +225,9 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
                 }
             });
         });
+    if shown.help {
+        help::show(ui, view.labels, &mut changes);
+    }
     changes
 }
 
@@ -208,8 +249,11 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
         ui.label(RichText::new(line).size(15.0).strong().color(theme::STRONG));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let name = if shown.panel { "Hide panel" } else { "Show panel" };
-            if ui.small_button(name).on_hover_text("F1 or Tab; H hides everything").clicked() {
+            if ui.small_button(name).on_hover_text("Tab; H hides everything").clicked() {
                 changes.push(Change::TogglePanel);
+            }
+            if ui.small_button("Help").on_hover_text("F1: keys, settings, how it works").clicked() {
+                changes.push(Change::ToggleHelp);
             }
         });
     });
@@ -231,8 +275,9 @@ fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     section(ui, "Last frame", true, |ui| figures::show(ui, view.stats));
     section(ui, "View", true, |ui| controls::view(ui, view, changes));
     section(ui, "Time against error", false, |ui| tuning::show(ui, view, changes));
-    section(ui, "Scene", false, |ui| scene(ui, view.scene));
-    section(ui, "Keys", false, |ui| keys(ui, view.labels));
+    section(ui, "Lights", false, |ui| lights::show(ui, view, changes));
+    section(ui, "Scene", false, |ui| scenes::section(ui, view, changes));
+    section(ui, "Keys", false, |ui| help::keys(ui, view.labels));
 }
 
 fn section(ui: &mut Ui, title: &str, open: bool, add_contents: impl FnOnce(&mut Ui)) {
@@ -254,31 +299,7 @@ fn presets(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
 
 /// The settings of a preset, as this scene is drawn by this machine in this window.
 fn of_preset(preset: &Preset, view: &View<'_>) -> Settings {
-    let Settings { threads, simd, refine_at_rest, target_fps, present, .. } = *view.settings;
     // The depth "scene" and the scene's own number are the same.
     let depth = view.settings.depth.filter(|depth| *depth == view.scene.render.max_depth);
-    Settings { threads, simd, refine_at_rest, target_fps, present, depth, ..(preset.settings)() }
-}
-
-fn scene(ui: &mut Ui, scene: &Scene) {
-    let count = |number: usize, one: &str, many: &str| format!("{number} {}", if number == 1 { one } else { many });
-    ui.label(RichText::new(&scene.name).color(theme::STRONG));
-    let lights = if scene.headlight { "headlight".to_owned() } else { count(scene.lights.len(), "light", "lights") };
-    ui.label(format!("{}, {lights}", count(scene.objects.len(), "object", "objects")));
-    for warning in scene.warnings.iter().take(WARNINGS) {
-        ui.label(RichText::new(warning.to_string()).color(theme::WARNING));
-    }
-    if scene.warnings.len() > WARNINGS {
-        ui.label(RichText::new(format!("and {} more", scene.warnings.len() - WARNINGS)).color(theme::WARNING));
-    }
-}
-
-fn keys(ui: &mut Ui, labels: &Labels) {
-    egui::Grid::new("keys").num_columns(2).spacing([16.0, 3.0]).show(ui, |ui| {
-        for (keys, what) in HELP {
-            ui.label(RichText::new(labels.of(keys)).color(theme::STRONG));
-            ui.label(RichText::new(*what).color(theme::WEAK));
-            ui.end_row();
-        }
-    });
+    Settings { depth, ..(preset.settings)() }.in_place_of(view.settings)
 }

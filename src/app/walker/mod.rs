@@ -38,7 +38,7 @@ const MAX_PITCH: f64 = 89.0;
 /// Vertical fields of view that can be set, in degrees.
 pub const FOV_RANGE: std::ops::RangeInclusive<f32> = 20.0..=120.0;
 /// Degrees of turn per count of the mouse, as it starts.
-const SENSITIVITY: f64 = 0.12;
+pub const SENSITIVITY: f64 = 0.12;
 
 /// Degrees and a place: what movement changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,6 +113,23 @@ impl Walker {
         let world = World { geometry: &scene.geometry, up: walker.up() };
         walker.take_eye_height(usual_eye_height(surroundings, world.distance(walker.pose.eye, -world.up)));
         walker
+    }
+
+    /// Comes to another scene and stands at `home` there. Habits stay: of looking, and of walking or flying.
+    pub fn enter(&mut self, scene: &Scene, home: Camera) {
+        let way = if self.is_walking() { Way::Walk(None) } else { Way::Fly };
+        let (sensitivity, invert_look) = (self.sensitivity, self.invert_look);
+        *self = Self { sensitivity, invert_look, way, ..Self::in_scene(scene, home) };
+    }
+
+    /// Where the walk started.
+    pub fn home(&self) -> Camera {
+        self.home
+    }
+
+    /// Has another place be where the walk started; the walker stays where they are.
+    pub fn set_home(&mut self, home: Camera) {
+        self.home = home;
     }
 
     /// Goes to `camera` and takes its field of view. Speed stays. On foot, one falls from there at the next step only.

@@ -50,14 +50,17 @@ impl LeafMembers {
     }
 }
 
-/// Builds a tree over boxes, `None` if there are none. Says also what its leaves hold, as indices of boxes; leaves of
+/// Builds a tree over boxes, `None` if there are none or it is no longer `wanted`. Says also what its leaves hold, as indices of boxes; leaves of
 /// a type are numbered in this order.
-pub fn build(boxes: &[Aabb], kinds: &[PrimitiveKind]) -> Option<(Bvh, Vec<LeafMembers>)> {
+pub fn build(boxes: &[Aabb], kinds: &[PrimitiveKind], wanted: &dyn Fn() -> bool) -> Option<(Bvh, Vec<LeafMembers>)> {
     if boxes.is_empty() {
         return None;
     }
     let mut binary = cluster(boxes);
-    reinsert(&mut binary);
+    reinsert(&mut binary, wanted);
+    if !wanted() {
+        return None;
+    }
     let mut wide = collapse(&binary, kinds);
     if wide.depth > DEEPEST {
         // Where boxes are nested by the thousand, reinsertion lines them up one below the other.
@@ -329,11 +332,11 @@ mod tests {
         for count in [1, 2, 7, 8, 9, 65, 3000] {
             for (_, boxes) in awkward(count) {
                 let kinds: Vec<_> = (0..count).map(|i| PrimitiveKind::ALL[i % 3 % PrimitiveKind::ALL.len()]).collect();
-                let (bvh, leaves) = build(&boxes, &kinds).expect("there are boxes");
+                let (bvh, leaves) = build(&boxes, &kinds, &|| true).expect("there are boxes");
                 check(&bvh, &leaves, &boxes, &kinds);
             }
         }
-        assert!(build(&[], &[]).is_none());
+        assert!(build(&[], &[], &|| true).is_none());
     }
 
     /// The work of clustering is the boxes times the depth: merging one pair a round makes as many levels as boxes.
@@ -343,7 +346,7 @@ mod tests {
             let kinds = vec![PrimitiveKind::Triangle; boxes.len()];
             let clustered = collapse(&cluster(&boxes), &kinds).depth;
             assert!(clustered <= 32, "{name}: {clustered} levels");
-            let (bvh, _) = build(&boxes, &kinds).expect("there are boxes");
+            let (bvh, _) = build(&boxes, &kinds, &|| true).expect("there are boxes");
             let built = depth(&bvh);
             assert!(built <= DEEPEST, "{name}: {built} levels");
         }
@@ -367,7 +370,7 @@ mod tests {
     #[test]
     fn coincident_primitives_fill_their_blocks() {
         let (_, boxes) = &awkward(4096)[0];
-        let (bvh, _) = build(boxes, &vec![PrimitiveKind::Sphere; boxes.len()]).expect("there are boxes");
+        let (bvh, _) = build(boxes, &vec![PrimitiveKind::Sphere; boxes.len()], &|| true).expect("there are boxes");
         assert_eq!(bvh.leaves, boxes.len() / BLOCK);
     }
 }

@@ -27,8 +27,8 @@ struct Move {
     gain: f32,
 }
 
-/// Moves subtrees of `tree` to better places.
-pub fn reinsert(tree: &mut Bvh2) {
+/// Moves subtrees of `tree` to better places, as long as that is `wanted`.
+pub fn reinsert(tree: &mut Bvh2, wanted: &dyn Fn() -> bool) {
     if tree.nodes.len() < 4 {
         return;
     }
@@ -38,6 +38,9 @@ pub fn reinsert(tree: &mut Bvh2) {
     let mut moves = Vec::new();
     let mut touched = vec![false; tree.nodes.len()];
     for pass in 1..=PASSES {
+        if !wanted() {
+            return;
+        }
         largest_nodes(tree, (first_pass / (2 * pass - 1)).max(1), &mut candidates);
         moves.clear();
         let search = |stack: &mut Vec<_>, &(_, node): &(f32, u32)| best_move(tree, node, stack);

@@ -3,7 +3,8 @@
 use crate::scene::desc::map::shortened;
 use crate::scene::desc::problem::{Outcome, Problem, Warnings};
 use crate::scene::desc::{ImageDesc, ImageSource};
-use crate::scene::files::{FileError, Files};
+use crate::scene::files::{CANCELLED, FileError, Files};
+use crate::scene::guard;
 use crate::scene::limits::{Limits, exceeded};
 use crate::scene::material::Encoding;
 use crate::scene::texels::Texels;
@@ -12,7 +13,7 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::io::Cursor;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ops::Deref;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -25,6 +26,8 @@ enum DecodeError {
     Edge(u64),
     #[error("the scene's textures have {}", exceeded("texture-bytes", *.0))]
     Budget(u64),
+    #[error("{CANCELLED}")]
+    Cancelled,
     #[error("the decoder gave up; the file is damaged")]
     Panicked,
     #[error("it has no pixels")]
@@ -43,10 +46,27 @@ enum Key {
     Embedded(usize, Encoding),
 }
 
+/// The bytes of an image as they are stored.
+enum Encoded {
+    File(Cow<'static, [u8]>),
+    Embedded(Arc<[u8]>),
+}
+
+impl Deref for Encoded {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::File(bytes) => bytes,
+            Self::Embedded(bytes) => bytes,
+        }
+    }
+}
+
 /// An image that waits to be decoded.
 struct Waiting {
     key: Key,
-    bytes: Cow<'static, [u8]>,
+    bytes: Encoded,
     /// The image that holds its opacity.
     opacity: Option<Cow<'static, [u8]>>,
     encoding: Encoding,
@@ -104,7 +124,7 @@ impl ImageStore {
                 if self.is_known(&key, waiting) {
                     return Ok(key);
                 }
-                (key, self.files.read(&path)?, None)
+                (key, Encoded::File(self.files.read(&path)?), None)
             }
             ImageSource::Masked { name, opacity } => {
                 let (path, mask) = (self.files.locate(&name.name)?, self.files.locate(&opacity.name)?);
@@ -112,7 +132,7 @@ impl ImageStore {
                 if self.is_known(&key, waiting) {
                     return Ok(key);
                 }
-                (key, self.files.read(&path)?, Some(self.files.read(&mask)?))
+                (key, Encoded::File(self.files.read(&path)?), Some(self.files.read(&mask)?))
             }
             ImageSource::Embedded { bytes, .. } => {
                 let key = Key::Embedded(bytes.as_ptr() as usize, encoding);
@@ -120,7 +140,7 @@ impl ImageStore {
                     return Ok(key);
                 }
                 self.embedded.push(Arc::clone(bytes));
-                (key, Cow::Owned(bytes.to_vec()), None)
+                (key, Encoded::Embedded(Arc::clone(bytes)), None)
             }
         };
         waiting.keys.insert(key.clone());
@@ -134,6 +154,8 @@ impl ImageStore {
 
     /// Decodes images side by side. What they may take is shared out beforehand, by what their headers say.
     fn decode(&mut self, waiting: Vec<Waiting>) {
+        let progress = self.files.progress();
+        progress.begin("decoding textures", waiting.len());
         let budgets: Vec<Result<u64, DecodeError>> = waiting
             .iter()
             .map(|image| {
@@ -146,7 +168,9 @@ impl ImageStore {
             })
             .collect();
         let decode = |(image, budget): (Waiting, Result<u64, DecodeError>)| {
-            let texels = budget.and_then(|budget| guarded(|| decode(&image, budget)));
+            let allowed = if progress.is_cancelled() { Err(DecodeError::Cancelled) } else { budget };
+            let texels = allowed.and_then(|budget| guarded(|| decode(&image, budget)));
+            progress.advance();
             (image.key, texels.map(Arc::new).map_err(|error| error.to_string()))
         };
         let decoded: Vec<_> = waiting.into_par_iter().zip(budgets).map(decode).collect();
@@ -180,7 +204,7 @@ impl ImageStore {
 
 /// The decoders are meant never to panic on damaged files; should one do so, only its image is lost.
 fn guarded<T>(decode: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, DecodeError> {
-    catch_unwind(AssertUnwindSafe(decode)).unwrap_or(Err(DecodeError::Panicked))
+    guard::guarded(decode).unwrap_or(Err(DecodeError::Panicked))
 }
 
 /// A decoder that has read an image's header.

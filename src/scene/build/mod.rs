@@ -23,7 +23,7 @@ use super::files::{FileError, Files};
 use super::limits::Limits;
 use super::material::{Encoding, Model};
 use super::texture::ImageTexture;
-use super::{Light, Material, NamedCamera, Object, RenderDefaults, Scene, Texture};
+use super::{Light, Material, NamedCamera, Object, Progress, RenderDefaults, Scene, Texture, next_generation};
 use crate::geometry::{Geometry, Part};
 use crate::settings::Exposure;
 use glam::Vec3;
@@ -31,12 +31,12 @@ use holes::HoleMaps;
 use image::ImageStore;
 use model::{Contents, Models};
 use placement::Placement;
-use probe::Probe;
+pub(super) use probe::Probe;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Ambient light of a scene that has no lights: a share of the headlight's. Also that of a scene that is exposed
@@ -55,6 +55,7 @@ pub struct SceneBuilder {
     name: String,
     format: &'static str,
     limits: Limits,
+    progress: Progress,
     images: ImageStore,
     holes: HoleMaps,
     models: Models,
@@ -82,6 +83,7 @@ impl SceneBuilder {
             name,
             format,
             models: Models::of(path, scene),
+            progress: files.progress().clone(),
             images: ImageStore::new(files, &limits),
             limits,
             holes: HoleMaps::default(),
@@ -100,6 +102,11 @@ impl SceneBuilder {
     /// What the scene may ask of the machine.
     pub fn limits(&self) -> &Limits {
         &self.limits
+    }
+
+    /// Who is told how far this has come.
+    pub fn progress(&self) -> &Progress {
+        &self.progress
     }
 
     /// The contents of a file that the scene names.
@@ -136,6 +143,7 @@ impl SceneBuilder {
             return self.place_model(contents, warnings);
         }
         self.render = render;
+        self.progress.begin("placing objects", 0);
         self.cameras.extend(cameras);
         self.lights.extend(contents.lights);
         self.add_objects(&contents.objects, &Placement::WORLD, &contents.materials, warnings)
@@ -189,34 +197,36 @@ impl SceneBuilder {
         Ok(default)
     }
 
-    /// The finished scene.
-    pub fn finish(mut self) -> Scene {
-        static GENERATION: AtomicU64 = AtomicU64::new(0);
+    /// The finished scene; `None` where it was cancelled.
+    pub fn finish(mut self) -> Option<Scene> {
         let headlight = self.lights.is_empty();
         if headlight {
             self.render.ambient = Vec3::splat(AMBIENT_SHARE);
+            self.materials.iter_mut().filter(|material| material.is_stand_in).for_each(Material::take_metal);
         }
         if self.materials.is_empty() {
             self.materials.push(Material::default_phong());
         }
         self.models.forget();
         let start = Instant::now();
-        let mut geometry = Geometry::build(std::mem::take(&mut self.parts));
+        self.progress.begin(format!("building the tree over {} shapes", self.parts.len()), 0);
+        let mut geometry = Geometry::build_while(std::mem::take(&mut self.parts), &|| !self.progress.is_cancelled())?;
         geometry.hole_maps = std::mem::take(&mut self.holes.maps);
         let build_ms = start.elapsed().as_secs_f64() * 1e3;
+        self.progress.begin("looking around", 0);
         let mut probe = Probe::new(&geometry);
         if self.cameras.is_empty() {
             let camera = framing::start(&mut probe, finite_bounds(&self.objects), &self.render);
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
         }
         let auto_exposure = self.expose(&mut probe);
-        Scene {
+        Some(Scene {
             name: self.name,
             format: self.format,
-            generation: GENERATION.fetch_add(1, Ordering::Relaxed),
-            geometry,
+            generation: next_generation(),
+            geometry: Arc::new(geometry),
             build_ms,
-            objects: self.objects,
+            objects: self.objects.into(),
             materials: self.materials,
             textures: self.textures,
             lights: self.lights,
@@ -225,7 +235,7 @@ impl SceneBuilder {
             render: self.render,
             auto_exposure,
             warnings: self.warnings,
-        }
+        })
     }
 
     /// The stops that show white at half of full brightness where the scene is as bright as usual.

@@ -9,6 +9,7 @@ use crate::geometry::{Shape, VertexAttributes, VertexExtras};
 use crate::scene::Object;
 use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
 use crate::scene::desc::{MeshDesc, ObjectDesc, ShapeDesc};
+use crate::scene::files::CANCELLED;
 use crate::scene::limits::exceeded;
 use glam::{DVec3, Vec3, Vec4};
 
@@ -27,6 +28,9 @@ impl SceneBuilder {
         warnings: &mut Warnings,
     ) -> Outcome<()> {
         for object in objects {
+            if self.progress().is_cancelled() {
+                return Err(Problem::new(object.at, CANCELLED));
+            }
             let own = object.transform.as_ref().map(|transform| parent.within(transform, object.at)).transpose()?;
             let placement = own.as_ref().unwrap_or(parent);
             match &object.shape {

@@ -48,6 +48,11 @@ impl<'a> Probe<'a> {
         self.look(origin, &[direction], t_min)[0]
     }
 
+    /// How far away the first primitive is that one ray meets, and which it is; [`NO_PRIMITIVE`] for none.
+    pub fn closest(&mut self, origin: Vec3, direction: Vec3, t_min: f32) -> (f32, PrimitiveIndex) {
+        dispatch!(SimdToken::best(), simd => self.trace(simd, origin, &[direction], t_min))[0]
+    }
+
     fn trace<S: Simd>(&mut self, simd: S, origin: Vec3, directions: &[Vec3], t_min: f32) -> Vec<(f32, PrimitiveIndex)> {
         let search = Search::new(self.geometry, true);
         let mut hits = Vec::with_capacity(directions.len());

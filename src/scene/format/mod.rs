@@ -16,7 +16,8 @@ use super::desc::SceneDesc;
 use super::desc::problem::{At, Outcome, Warnings};
 use super::error::{Place, SceneError, Warning};
 use super::files::{FileError, Files};
-use super::{Limits, Scene};
+use super::guard::guarded;
+use super::{Limits, Progress, Scene};
 use std::path::Path;
 
 /// How a scene is loaded.
@@ -26,6 +27,8 @@ pub struct LoadOptions {
     pub strict: bool,
     /// What the scene may ask of the machine.
     pub limits: Limits,
+    /// Is told how far the load has come, and may end it.
+    pub progress: Progress,
 }
 
 /// The scene or model file that a reader is given.
@@ -46,6 +49,18 @@ pub struct Format {
     pub read: fn(&Input, &mut SceneBuilder) -> Result<(), SceneError>,
 }
 
+impl Format {
+    /// The format of a file, by its name.
+    pub fn of(path: &Path) -> Option<&'static Self> {
+        find(&path.file_name()?.to_string_lossy())
+    }
+
+    /// The extensions of all formats, for messages.
+    pub fn known() -> String {
+        FORMATS.iter().flat_map(|f| f.extensions).map(|e| format!(".{e}")).collect::<Vec<_>>().join(", ")
+    }
+}
+
 /// Every format.
 pub const FORMATS: &[Format] = &[
     Format { name: "JSON", extensions: &["json"], read: json::read },
@@ -58,10 +73,11 @@ pub const FORMATS: &[Format] = &[
 /// Loads a scene from a file; its format is known by its extension.
 ///
 /// # Errors
-/// The file cannot be read, is of no known format, or says something wrong; with
-/// [`strict`](LoadOptions::strict), also something odd.
+/// The file cannot be read, is of no known format, or says something wrong; with [`strict`](LoadOptions::strict), also
+/// something odd. Or the load was cancelled.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, SceneError> {
-    let mut files = Files::beside(path, &options.limits).map_err(|error| unreadable(path, error))?;
+    let files = Files::beside(path, &options.limits).map_err(|error| unreadable(path, error))?;
+    let mut files = files.told_to(&options.progress);
     let bytes = files.read(path).map_err(|error| unreadable(path, error))?;
     read(&Input { path, bytes: &bytes }, files, options)
 }
@@ -75,7 +91,7 @@ pub fn load_embedded(
     files: &'static [(&'static str, &'static [u8])],
     options: &LoadOptions,
 ) -> Result<Scene, SceneError> {
-    let mut files = Files::embedded(files, &options.limits);
+    let mut files = Files::embedded(files, &options.limits).told_to(&options.progress);
     let path = Path::new(name);
     let bytes = files.read(path).map_err(|error| unreadable(path, error))?;
     read(&Input { path, bytes: &bytes }, files, options)
@@ -87,14 +103,19 @@ pub fn load_embedded(
 /// As for [`load`].
 pub fn load_text(name: &str, text: &str, options: &LoadOptions) -> Result<Scene, SceneError> {
     let input = Input { path: Path::new(name), bytes: text.as_bytes() };
-    read(&input, Files::embedded(&[], &options.limits), options)
+    read(&input, Files::embedded(&[], &options.limits).told_to(&options.progress), options)
 }
 
 fn read(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, SceneError> {
-    let format = format_of(input.path)?;
-    let mut builder = SceneBuilder::new(input.path, format.name, files, options.limits.clone());
-    (format.read)(input, &mut builder)?;
-    let mut scene = builder.finish();
+    let place = || whole(input.path);
+    // The readers and the libraries below them are meant never to panic; should one, this scene is all that is lost.
+    let built = guarded(|| build(input, files, options))
+        .unwrap_or_else(|message| Err(SceneError::Broken { place: place(), message }));
+    // Whoever was told to stop may have made a warning or an error of it.
+    if options.progress.is_cancelled() {
+        return Err(SceneError::Cancelled { place: place() });
+    }
+    let mut scene = built?;
     if scene.objects.is_empty() {
         let message = "the scene holds no object; the picture is its background".to_owned();
         scene.warnings.push(Warning { place: whole(input.path), message });
@@ -106,6 +127,13 @@ fn read(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, Sce
         }),
         _ => Ok(scene),
     }
+}
+
+fn build(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, SceneError> {
+    let format = format_of(input.path)?;
+    let mut builder = SceneBuilder::new(input.path, format.name, files, options.limits.clone());
+    (format.read)(input, &mut builder)?;
+    builder.finish().ok_or_else(|| SceneError::Cancelled { place: whole(input.path) })
 }
 
 /// Reads a file of any format into a scene under construction.
@@ -140,11 +168,8 @@ fn placed(warnings: Warnings, places: impl Fn(&[At]) -> Vec<Place>) -> Vec<Warni
 
 /// The format of a file, by its name.
 fn format_of(path: &Path) -> Result<&'static Format, SceneError> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    find(&name).ok_or_else(|| SceneError::UnknownFormat {
-        file: path.display().to_string(),
-        known: FORMATS.iter().flat_map(|f| f.extensions).map(|e| format!(".{e}")).collect::<Vec<_>>().join(", "),
-    })
+    Format::of(path)
+        .ok_or_else(|| SceneError::UnknownFormat { file: path.display().to_string(), known: Format::known() })
 }
 
 /// The format that a file's name tells.
@@ -162,6 +187,7 @@ fn whole(path: &Path) -> Place {
 fn unreadable(path: &Path, error: FileError) -> SceneError {
     let place = whole(path);
     match error {
+        FileError::Cancelled => SceneError::Cancelled { place },
         FileError::Io(source) => SceneError::Io { place, what: "the scene".to_owned(), source },
         other => SceneError::Invalid { place, message: format!("cannot read the scene: {other}") },
     }

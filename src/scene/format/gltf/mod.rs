@@ -39,12 +39,12 @@ mod uri;
 
 use super::Input;
 use super::json::parse_as;
-use crate::scene::RenderDefaults;
 use crate::scene::build::SceneBuilder;
 use crate::scene::desc::SceneDesc;
 use crate::scene::error::SceneError;
 use crate::scene::limits::Limits;
 use crate::scene::material::Alpha;
+use crate::scene::{Progress, RenderDefaults};
 use crate::settings::{Exposure, ToneMap};
 use container::Container;
 use document::Document;
@@ -65,7 +65,7 @@ pub fn read(input: &Input, builder: &mut SceneBuilder) -> Result<(), SceneError>
     check_version(&root).and_then(|()| extensions::check(&root, &mut report)).map_err(in_file)?;
     let limits = builder.limits().clone();
     let document = Document::new(root, bin, &limits, |name| builder.read_file(name));
-    let scene = describe(&document, &limits, &mut report).map_err(in_file)?;
+    let scene = describe(&document, &limits, builder.progress(), &mut report).map_err(in_file)?;
     drop(document);
     let mut warnings = std::mem::take(&mut report.warnings);
     builder.add(scene, &mut warnings).map_err(|problem| in_file(report.fault(problem)))?;
@@ -86,11 +86,11 @@ fn check_version(root: &Root) -> Read<()> {
 }
 
 /// The description of the default scene.
-fn describe(document: &Document, limits: &Limits, report: &mut Report) -> Read<SceneDesc> {
+fn describe(document: &Document, limits: &Limits, progress: &Progress, report: &mut Report) -> Read<SceneDesc> {
     let nodes = Nodes::walk(document, limits, report)?;
     let mut textures = Textures::new(document);
     let materials = material::materials(document, &mut textures, report)?;
-    let objects = objects::objects(document, &nodes, &materials, limits, report)?;
+    let objects = objects::objects(document, &nodes, &materials, limits, progress, report)?;
     let see_through = materials.iter().any(|m| m.alpha == Alpha::Blend || m.is_transparent());
     let render = RenderDefaults::default();
     Ok(SceneDesc {

@@ -7,7 +7,9 @@ use super::nodes::{self, Nodes};
 use super::skin::Holder;
 use super::{instancing, material};
 use crate::geometry::Aabb;
+use crate::scene::Progress;
 use crate::scene::desc::{MaterialDesc, MeshDesc, NameRef, ObjectDesc, ShapeDesc};
+use crate::scene::files::CANCELLED;
 use crate::scene::limits::{Limits, exceeded};
 use glam::{DAffine3, DVec3};
 use gltf::json::mesh::Primitive;
@@ -25,6 +27,7 @@ pub fn objects(
     nodes: &Nodes,
     materials: &[MaterialDesc],
     limits: &Limits,
+    progress: &Progress,
     report: &mut Report,
 ) -> Read<Vec<ObjectDesc>> {
     let mut jobs: Vec<Job> = Vec::new();
@@ -77,7 +80,16 @@ pub fn objects(
         drawn.push((node, places, own_jobs));
     }
 
-    let meshes: Vec<_> = jobs.par_iter().map(|job| job.read(document, nodes)).collect::<Read<_>>()?;
+    progress.begin("reading meshes", jobs.len());
+    let read = |job: &Job| {
+        if progress.is_cancelled() {
+            return Err(Fault::new(&*job.pointer, CANCELLED));
+        }
+        let read = job.read(document, nodes);
+        progress.advance();
+        read
+    };
+    let meshes: Vec<_> = jobs.par_iter().map(read).collect::<Read<_>>()?;
     let mut shapes: Vec<Option<Arc<MeshDesc>>> = Vec::with_capacity(meshes.len());
     for (job, read) in jobs.iter().zip(meshes) {
         shapes.push(match read {

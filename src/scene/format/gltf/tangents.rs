@@ -2,10 +2,10 @@
 //! the specification asks for, and what most maps were baked with.
 
 use crate::scene::desc::MeshDesc;
+use crate::scene::guard::guarded;
 use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 use glam::{DVec3, Vec4};
 use std::collections::HashMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Gives a mesh tangents along the texture coordinates of set `set`. Vertices at which they break are doubled, so that
 /// one vertex has one tangent. `false` where the mesh has no such coordinates, or no tangents can be made.
@@ -17,7 +17,7 @@ pub fn generate(mesh: &mut MeshDesc, set: u8) -> bool {
     let none = Vec4::new(1.0, 0.0, 0.0, 1.0);
     let mut corners = Corners { mesh, set, tangents: vec![[none; 3]; mesh.triangles.len()] };
     // It is not meant to panic on any mesh; should it do so, only the normal map is lost.
-    let made = catch_unwind(AssertUnwindSafe(|| generate_tangents(&mut corners).is_ok())).unwrap_or(false);
+    let made = guarded(|| generate_tangents(&mut corners).is_ok()).unwrap_or(false);
     let tangents = corners.tangents;
     if made {
         distribute(mesh, &tangents);

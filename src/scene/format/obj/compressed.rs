@@ -1,10 +1,10 @@
 //! Files that were compressed with Zstandard (RFC 8878).
 
+use crate::scene::guard::guarded;
 use crate::scene::limits::{Limits, exceeded};
 use ruzstd::decoding::StreamingDecoder;
 use std::borrow::Cow;
 use std::io::Read;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What a frame starts with.
 const MAGIC: [u8; 4] = [0x28, 0xB5, 0x2F, 0xFD];
@@ -15,7 +15,7 @@ pub fn expanded<'t>(bytes: &'t [u8], limits: &Limits) -> Result<Cow<'t, [u8]>, S
         return Ok(Cow::Borrowed(bytes));
     }
     // The decoder is meant never to panic on damaged files; should it do so, only this file is lost.
-    let text = catch_unwind(AssertUnwindSafe(|| decode(bytes, limits.file_bytes)))
+    let text = guarded(|| decode(bytes, limits.file_bytes))
         .unwrap_or_else(|_| Err("the decoder gave up; the file is damaged".to_owned()))?;
     Ok(Cow::Owned(text))
 }

@@ -1,0 +1,138 @@
+//! Scenes in words: the one shown, how far the next has come, and what was wrong or odd.
+
+use super::{Change, View, theme};
+use crate::app::scenes::{Failure, Loading, Report, Wish};
+use crate::scene::Scene;
+use egui::{Align2, Color32, ProgressBar, RichText, ScrollArea, Ui};
+use std::path::Path;
+
+/// Widest that a box of text is, in points.
+const WIDTH: f32 = 560.0;
+/// Distance from the window's sides in points, and from its lower edge, where notices come and go.
+const MARGIN: f32 = 24.0;
+const ABOVE_NOTICES: f32 = 96.0;
+/// Most warnings of a scene that are listed.
+const WARNINGS: usize = 5;
+/// Highest that the text of a failure is, in points.
+const TALLEST: f32 = 160.0;
+
+/// The boxes over the picture: they are there even where the overlay is hidden.
+pub fn boxes(ui: &Ui, view: &View<'_>, changes: &mut Vec<Change>) {
+    let Report { loading, failure, odd, hint, .. } = &view.scenes;
+    if loading.is_none() && failure.is_none() && odd.is_none() && hint.is_none() {
+        return;
+    }
+    let available = ui.ctx().content_rect();
+    let width = WIDTH.min(available.width() - 2.0 * MARGIN).max(1.0);
+    egui::Area::new(egui::Id::unique("scenes"))
+        .anchor(Align2::CENTER_BOTTOM, egui::vec2(0.0, -ABOVE_NOTICES))
+        .constrain(true)
+        .show(ui.ctx(), |ui| {
+            ui.set_width(width);
+            if let Some(scene) = odd {
+                in_box(ui, theme::WARNING, |ui| warnings_box(ui, scene, changes));
+            }
+            if let Some(failure) = failure {
+                in_box(ui, theme::FAILURE, |ui| failure_box(ui, failure, changes));
+            }
+            if let Some(loading) = loading {
+                in_box(ui, theme::ACCENT, |ui| loading_box(ui, loading, changes));
+            }
+            if let Some(hint) = hint {
+                in_box(ui, theme::ACCENT, |ui| drop(ui.label(RichText::new(*hint).color(theme::STRONG))));
+            }
+        });
+}
+
+fn in_box(ui: &mut Ui, edge: Color32, add_contents: impl FnOnce(&mut Ui)) {
+    let frame = egui::Frame::new().fill(theme::BACKGROUND).stroke(egui::Stroke::new(1.0, edge));
+    frame.inner_margin(10.0).corner_radius(6.0).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        add_contents(ui);
+    });
+}
+
+fn loading_box(ui: &mut Ui, loading: &Loading, changes: &mut Vec<Change>) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(format!("Loading {}", loading.name)).strong().color(theme::STRONG));
+        ui.label(RichText::new(format!("{:.0} s", loading.seconds)).color(theme::WEAK));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if ui.small_button("Cancel").on_hover_text("Esc").clicked() {
+                changes.push(Change::Scenes(Wish::Cancel));
+            }
+        });
+    });
+    ui.label(RichText::new(loading.step.to_string()).color(theme::WEAK));
+    if loading.step.of > 0 {
+        ui.add(ProgressBar::new(loading.step.done as f32 / loading.step.of as f32).desired_height(6.0));
+    }
+}
+
+fn failure_box(ui: &mut Ui, failure: &Failure, changes: &mut Vec<Change>) {
+    ui.label(RichText::new(&failure.title).strong().color(theme::FAILURE));
+    ScrollArea::vertical().max_height(TALLEST).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.label(RichText::new(&failure.message).color(theme::STRONG));
+    });
+    ui.horizontal(|ui| {
+        if let Some(file) = &failure.file
+            && ui.small_button("Try again").clicked()
+        {
+            changes.push(Change::Scenes(Wish::OpenFile(file.clone())));
+        }
+        if ui.small_button("Dismiss").clicked() {
+            changes.push(Change::Scenes(Wish::DismissFailure));
+        }
+    });
+}
+
+fn warnings_box(ui: &mut Ui, scene: &Scene, changes: &mut Vec<Change>) {
+    let title = match scene.warnings.len() {
+        1 => format!("{} was loaded, with a warning", scene.name),
+        many => format!("{} was loaded, with {many} warnings", scene.name),
+    };
+    ui.label(RichText::new(title).strong().color(theme::WARNING));
+    warnings(ui, scene);
+    if ui.small_button("Dismiss").on_hover_text("they stay listed in the panel").clicked() {
+        changes.push(Change::Scenes(Wish::DismissWarnings));
+    }
+}
+
+fn warnings(ui: &mut Ui, scene: &Scene) {
+    for warning in scene.warnings.iter().take(WARNINGS) {
+        ui.label(RichText::new(warning.to_string()).color(theme::WARNING));
+    }
+    if scene.warnings.len() > WARNINGS {
+        ui.label(RichText::new(format!("and {} more", scene.warnings.len() - WARNINGS)).color(theme::WARNING));
+    }
+}
+
+/// The section of the panel: what is shown, and what else could be.
+pub fn section(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
+    let scene = view.scene;
+    let count = |number: usize, one: &str, many: &str| format!("{number} {}", if number == 1 { one } else { many });
+    ui.label(RichText::new(&scene.name).color(theme::STRONG));
+    let lights = if scene.headlight { "headlight".to_owned() } else { count(scene.lights.len(), "light", "lights") };
+    ui.label(format!("{}, {lights}", count(scene.objects.len(), "object", "objects")));
+    warnings(ui, scene);
+    ui.horizontal(|ui| {
+        if ui.button("Open...").on_hover_text("Ctrl+O; or drop a file or folder on the window").clicked() {
+            changes.push(Change::Scenes(Wish::Open));
+        }
+        if ui.button("Reload").on_hover_text("F5; it is reloaded by itself when its files change").clicked() {
+            changes.push(Change::Scenes(Wish::Reload));
+        }
+    });
+    if let Some(reason) = view.scenes.blind {
+        ui.label(RichText::new(format!("changes on disk are not noticed: {reason}")).color(theme::WARNING));
+    }
+    if !view.scenes.recent.is_empty() {
+        ui.label(RichText::new("opened before").color(theme::WEAK));
+    }
+    for file in view.scenes.recent {
+        let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
+        if ui.link(name).on_hover_text(file.display().to_string()).clicked() {
+            changes.push(Change::Scenes(Wish::OpenFile(Path::to_owned(file))));
+        }
+    }
+}
