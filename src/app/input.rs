@@ -24,6 +24,8 @@ pub enum Hold {
     Fast,
     /// Slower.
     Slow,
+    /// The exact picture.
+    Exact,
 }
 
 /// What a key does once, when it goes down.
@@ -71,6 +73,10 @@ pub enum Command {
     ToggleRecording,
     /// Start or stop replaying the last one.
     ToggleReplay,
+    /// The next map of what the methods do.
+    NextMap,
+    /// Show two settings side by side, or no longer.
+    ToggleSplit,
 }
 
 /// Keys that act while held. Codes name positions, so that WASD is the same block of keys on every layout.
@@ -85,6 +91,7 @@ pub const HOLD_KEYS: &[(KeyCode, Hold)] = &[
     (KeyCode::ShiftRight, Hold::Fast),
     (KeyCode::AltLeft, Hold::Slow),
     (KeyCode::AltRight, Hold::Slow),
+    (KeyCode::KeyX, Hold::Exact),
 ];
 
 /// Keys that act once; `true` where Ctrl must be held.
@@ -129,6 +136,8 @@ pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::Digit8, true, Command::StoreBookmark(8)),
     (KeyCode::Digit9, false, Command::GoToBookmark(9)),
     (KeyCode::Digit9, true, Command::StoreBookmark(9)),
+    (KeyCode::KeyV, false, Command::NextMap),
+    (KeyCode::KeyB, false, Command::ToggleSplit),
 ];
 
 /// The help shown in the overlay: keys and what they do.
@@ -146,6 +155,9 @@ pub const HELP: &[(&str, &str)] = &[
     ("1 to 9", "go to a bookmark; with Ctrl, set it"),
     ("Ctrl+C, Ctrl+V", "copy, paste the camera"),
     ("R, P", "record a camera path, replay it"),
+    ("V", "next map of what the methods do"),
+    ("X, held", "the exact picture"),
+    ("B", "two settings side by side"),
     ("H", "hide everything"),
     ("I, right click", "tell of the thing under the pointer"),
     ("Ctrl+O", "open a scene; or drop one on the window"),
@@ -220,9 +232,14 @@ impl Keys {
         self.ctrl = false;
     }
 
+    /// Whether a key is down that does this.
+    pub fn is_held(&self, what: Hold) -> bool {
+        HOLD_KEYS.iter().any(|(code, hold)| *hold == what && self.down.contains(code))
+    }
+
     /// What the held keys ask for. Opposite keys cancel.
     pub fn motion(&self) -> Motion {
-        let held = |what: Hold| HOLD_KEYS.iter().any(|(code, hold)| *hold == what && self.down.contains(code));
+        let held = |what: Hold| self.is_held(what);
         let axis = |plus: Hold, minus: Hold| f64::from(i8::from(held(plus)) - i8::from(held(minus)));
         Motion {
             right: axis(Hold::Right, Hold::Left),

@@ -34,10 +34,7 @@ pub fn inspect(scene: &Scene, camera: &Camera, size: (u32, u32), place: DVec2) -
         ("kind", format!("{}, object {} of {}", object.kind, pick.id.object, scene.objects.len())),
         ("distance", format!("{} m", rounded(pick.distance))),
         ("primitive", format!("{} of {}", pick.id.primitive, primitives(scene, pick.id.object, object.kind))),
-        (
-            "size",
-            object.bounds.is_finite().then(|| vector(object.bounds.size())).unwrap_or_else(|| "endless".to_owned()),
-        ),
+        ("size", if object.bounds.is_finite() { vector(object.bounds.size()) } else { "endless".to_owned() }),
     ];
     facts.extend(facts_of(material));
     Some(Inspection {

@@ -9,11 +9,14 @@
 pub mod bookmarks;
 pub mod config;
 pub mod error;
+pub mod exam;
 pub mod history;
 pub mod input;
 pub mod inspection;
 pub mod labels;
 pub mod lighting;
+pub mod maps;
+pub mod methods;
 pub mod overlay;
 pub mod present;
 pub mod scenes;
@@ -37,6 +40,7 @@ mod session;
 mod steering;
 mod tracer;
 mod viewer;
+mod views;
 
 pub use config::UI_SCALES;
 pub use error::AppError;

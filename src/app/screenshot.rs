@@ -198,6 +198,7 @@ fn quoted(word: &str) -> String {
 mod tests {
     use super::*;
     use crate::app::lowering::Lowering;
+    use crate::app::methods::Aspect;
     use crate::picture::temporary::Folder;
     use crate::render::Planes;
     use crate::scene::{Scene, nothing};
@@ -214,6 +215,7 @@ mod tests {
             width: 8,
             height: 4,
             lowering: Lowering::NONE,
+            aspect: Aspect::default(),
         }
     }
 

@@ -6,15 +6,17 @@ use super::config::{Keeper, UI_SCALES, WindowState};
 use super::desktop;
 use super::errands::{self, Errands};
 use super::error::AppError;
+use super::exam::{Exam, Subject};
 use super::gpu::{Gpu, Target};
 use super::history::History;
-use super::input::{Command, Keys};
+use super::input::{Command, Hold, Keys};
 use super::inspection::{self, Inspection};
 use super::journey::Journey;
 use super::labels::Labels;
 use super::layer::Layer;
 use super::lighting::Lighting;
-use super::lowering::{lowered, presets_below};
+use super::lowering::{Lowering, lowered, presets_below};
+use super::methods::{self, Methods};
 use super::overlay::{self, Change, Notices, Showing, Shown, Tuning, View};
 use super::pacing::{Limiter, Rates};
 use super::present::Presenter;
@@ -98,6 +100,7 @@ pub struct Session {
     /// What the last frame shows, and with how many samples a pixel if it was refined.
     traced: Option<(Job, Option<u32>)>,
     steering: Steering,
+    methods: Methods,
     /// What the next search has to keep, and what is known of the last.
     bound: Bound,
     survey: Option<Survey>,
@@ -188,6 +191,7 @@ impl Session {
             posted: None,
             traced: None,
             steering: Steering::new(presets_below(&options.settings)),
+            methods: Methods::new(&options.settings),
             bound: overlay::usual_bound(metric("flip").unwrap_or(&METRICS[0])),
             survey: None,
             stands: (camera, None),
@@ -410,6 +414,8 @@ impl Session {
             Some(Command::PasteCamera) => self.paste(now),
             Some(Command::ToggleRecording) => self.toggle_recording(now),
             Some(Command::ToggleReplay) => self.toggle_replay(now),
+            Some(Command::NextMap) => self.change_methods(&methods::Change::Map(self.methods.map.next())),
+            Some(Command::ToggleSplit) => self.change_methods(&methods::Change::Split(!self.methods.split.is_on)),
             Some(Command::Quit) | None => return false,
         }
         self.keeper.touch(now);
@@ -508,8 +514,17 @@ impl Session {
             self.survey = Some(survey);
             self.figures.demand(Instant::now(), self.rates.figures);
         }
-        let now = Instant::now();
+        if let Some(exam) = self.tracer.take_exam() {
+            self.methods.exam = Some(exam);
+            self.figures.demand(Instant::now(), self.rates.figures);
+        }
         let Some(frame) = self.tracer.take() else { return };
+        let now = Instant::now();
+        // The same view with fewer samples is a step back: it is on its way to more.
+        let is_less = self.traced.as_ref().is_some_and(|(job, samples)| *job == frame.job && *samples > frame.samples);
+        if is_less || !self.methods.shows(&frame) {
+            return frame.into_films().for_each(|film| self.tracer.recycle(film));
+        }
         if let Some(shot) = self.camerawork.frame(&frame.film, &frame.job, frame.samples) {
             self.write(shot);
         }
@@ -522,9 +537,12 @@ impl Session {
             self.stats = frame.stats.clone();
             self.stats.stages_ms.present = present;
         }
-        self.traced = Some((frame.job.clone(), frame.samples));
+        let before = self.traced.replace((frame.job.clone(), frame.samples));
+        if frame.job.aspect.is_exact {
+            self.methods.leave(before);
+        }
         if let Some(missed) = self.fresh.replace(frame) {
-            self.tracer.recycle(missed.film);
+            missed.into_films().for_each(|film| self.tracer.recycle(film));
         }
         self.picture.demand(now, self.rates.display);
         if self.shown.overlay {
@@ -646,17 +664,20 @@ impl Session {
         if width == 0 || height == 0 {
             return None;
         }
+        self.hold_exact(now);
         let camera = self.walker.camera();
         if self.stands.0 != camera {
             self.stands = (camera, Some(now));
         }
         let stops =
             self.stands.1.map(|since| since + REST).filter(|&at| at > now && self.settings.target_fps.is_some());
-        let lowering = self.steering.lowering(stops.is_some());
-        let settings = lowered(&self.settings, lowering);
+        // What is exact gives nothing up.
+        let is_exact = self.methods.wants_exact;
+        let lowering = if is_exact { Lowering::NONE } else { self.steering.lowering(stops.is_some()) };
+        let (settings, aspect) = self.methods.ask(&lowered(&self.settings, lowering));
         let (width, height) = (lowering.scaled(width), lowering.scaled(height));
         let scene = Arc::clone(&self.lit);
-        let job = Job { scene, camera, settings, width, height, lowering };
+        let job = Job { scene, camera, settings, width, height, lowering, aspect };
         if self.posted.as_ref() != Some(&job) {
             self.posted = Some(job.clone());
             self.tracer.post(job);
@@ -667,6 +688,8 @@ impl Session {
     /// What the picture is.
     fn showing(&self) -> Showing {
         match &self.traced {
+            Some((job, samples)) if job.aspect.is_exact => Showing::Exact(*samples),
+            _ if self.methods.wants_exact => Showing::ExactSoon,
             Some((_, Some(samples))) => Showing::Refined(*samples),
             Some((Job { lowering, .. }, None)) if lowering.level > 0 => {
                 Showing::Moving { preset: lowering.preset, scale: lowering.scale }
@@ -682,11 +705,7 @@ impl Session {
 
     fn draw(&mut self, now: Instant) -> Result<(), AppError> {
         self.redraw_requested = false;
-        if let Some(TracedFrame { film, .. }) = self.fresh.take()
-            && let Some(shown) = self.presenter.set_frame(&self.gpu, film)
-        {
-            self.tracer.recycle(shown);
-        }
+        self.show_frame();
         if self.figures.is_due(now) {
             self.paint_overlay(now);
         }
@@ -705,9 +724,11 @@ impl Session {
     fn paint_overlay(&mut self, now: Instant) {
         let resting = self.history.is_resting(now) && !self.tracer.is_busy();
         self.notices.expire(now);
+        let camera = self.walker.camera();
+        self.methods.is_elsewhere = self.methods.exam.as_ref().is_some_and(|exam| exam.camera != camera);
         let view = View {
             scene: &self.scene,
-            settings: &self.settings,
+            settings: self.methods.edited(&self.settings),
             stats: &self.stats,
             history: &self.history,
             resting,
@@ -720,11 +741,13 @@ impl Session {
             sensitivity: self.walker.sensitivity,
             invert_look: self.walker.invert_look,
             ui_scale: self.ui_scale,
+            methods: &self.methods,
+            left: &self.settings,
             tuning: Tuning {
                 bound: self.bound,
                 survey: self.survey.as_ref(),
                 drawn: self.traced.as_ref().map_or(&self.settings, |(job, _)| &job.settings),
-                is_elsewhere: self.survey.as_ref().is_some_and(|survey| survey.camera != self.walker.camera()),
+                is_elsewhere: self.survey.as_ref().is_some_and(|survey| survey.camera != camera),
             },
             scenes: self.scenes.report(now),
             lights: self.lighting.dials(),
@@ -770,6 +793,7 @@ impl Session {
 
     fn apply(&mut self, change: Change) {
         match change {
+            Change::Settings(settings) if self.methods.edits_right() => self.methods.split.right = settings,
             Change::Settings(settings) => {
                 let shown_otherwise = settings.present != self.settings.present;
                 self.steering = Steering::new(presets_below(&settings));
@@ -806,6 +830,7 @@ impl Session {
                 }
             }
             Change::UiScale(scale) => self.scale_ui(scale),
+            Change::Methods(change) => self.change_methods(&change),
             Change::TogglePanel => self.shown = self.shown.with_panel_toggled(),
             Change::Scenes(wish) => self.wish(wish),
             Change::Light(light, dial) => {
@@ -828,6 +853,65 @@ impl Session {
         self.layer.set_scale(self.ui_scale);
     }
 
+    /// Hands the newest frame to the presenter, or the films of two sides joined anew.
+    fn show_frame(&mut self) {
+        let Self { methods, presenter, gpu, tracer, .. } = self;
+        let mut present = |film| presenter.set_frame(gpu, film);
+        let mut recycle = |film| tracer.recycle(film);
+        if let Some(frame) = self.fresh.take() {
+            methods.display(frame, &mut present, &mut recycle);
+        } else if methods.split.is_outdated() && !methods.wants_exact {
+            methods.split.present(&mut present, &mut recycle);
+        }
+    }
+
+    /// Notes whether the key for the exact picture is down; once it is up, goes back to what was there before.
+    fn hold_exact(&mut self, now: Instant) {
+        let wants = self.keys.is_held(Hold::Exact);
+        if self.methods.wants_exact == wants {
+            return;
+        }
+        self.methods.wants_exact = wants;
+        self.repaint(now);
+        if wants {
+            return;
+        }
+        if let Some(late) = self.fresh.take_if(|frame| frame.job.aspect.is_exact) {
+            late.into_films().for_each(|film| self.tracer.recycle(film));
+        }
+        let (film, what) = self.methods.go_back(&self.walker.camera());
+        if let Some(exact) = film.and_then(|film| self.presenter.set_frame(&self.gpu, film)) {
+            self.tracer.recycle(exact);
+        }
+        self.traced = what.or(self.traced.take());
+        self.picture.demand(now, self.rates.display);
+    }
+
+    fn change_methods(&mut self, change: &methods::Change) {
+        self.methods.apply(change, &self.settings);
+        match change {
+            methods::Change::MeasureErrors => self.examine(Subject::Errors),
+            methods::Change::MeasureCosts => self.examine(Subject::Costs),
+            methods::Change::Stop => self.tracer.stop_search(),
+            _ => self.picture.demand(Instant::now(), self.rates.display),
+        }
+    }
+
+    /// Starts an exam of the settings on what is seen from here.
+    fn examine(&mut self, subject: Subject) {
+        let size = picture_size(self.gpu.size());
+        if size.0 == 0 || size.1 == 0 {
+            return;
+        }
+        let settings = self.methods.edited(&self.settings).clone();
+        let exam = Exam::new(subject, self.walker.camera(), settings, size).with_answers_of(self.methods.exam.as_ref());
+        self.methods.exam = Some(exam.clone());
+        self.tracer.examine(Arc::clone(&self.lit), exam);
+        if let Some(survey) = &mut self.survey {
+            survey.end.get_or_insert(End::Stopped);
+        }
+    }
+
     /// Starts a search on what is seen from here.
     fn search(&mut self, bound: Bound) {
         let size = picture_size(self.gpu.size());
@@ -848,6 +932,7 @@ impl Session {
         let survey = Survey::new(camera, bound);
         self.survey = Some(survey.clone());
         self.tracer.search(Arc::clone(&self.lit), task, survey);
+        self.methods.end_exam();
     }
 
     /// Starts over on a new device, unless the old one did not even last.
@@ -865,7 +950,7 @@ impl Session {
     fn replace_presenter(&mut self, now: Instant) {
         self.presenter = Presenter::new(&self.gpu, self.settings.present);
         self.layer = Layer::new(&self.gpu, &self.window, self.ui_scale);
-        self.posted = None;
+        (self.posted, self.traced) = (None, None);
         self.repaint(now);
     }
 }

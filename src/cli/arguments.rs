@@ -3,6 +3,7 @@
 
 use super::values;
 use clap::{Arg, ArgAction, Command, crate_version, value_parser};
+use raywalk::app::maps::Map;
 use raywalk::app::screenshot;
 use raywalk::math::simd;
 use raywalk::measure::metric::METRICS;
@@ -40,6 +41,7 @@ pub fn command() -> Command {
 fn render() -> Command {
     let formats: Vec<String> =
         FORMATS.iter().map(|format| format!(".{}: {}", format.extensions.join(" ."), format.help)).collect();
+    let maps = Map::ALL.map(|map| format!("{}: {}", map.name(), map.help()));
     let command = Command::new("render")
         .about("Renders one or many frames, without window or GPU")
         .after_help("Starts from the preset exact. Without -o nothing is written: the run is timed (see --stats).")
@@ -63,6 +65,17 @@ fn render() -> Command {
                 .value_parser(["full"])
                 .requires("stats")
                 .help("Trace each frame once more, untimed, with a ray for every pixel; --stats tells the difference"),
+        )
+        .arg(
+            Arg::new("map")
+                .long("map")
+                .value_name("MAP")
+                .value_parser(Map::ALL.map(Map::name))
+                .help("Write what a method does instead of the picture; not as .exr")
+                .long_help(format!(
+                    "Write what a method does instead of the picture; not as .exr\n{}",
+                    maps.join("\n")
+                )),
         );
     with_shared(command)
 }

@@ -2,6 +2,7 @@
 
 use super::Failure;
 use super::frames::Frames;
+use raywalk::app::maps::Map;
 use raywalk::picture::{Format, NumberedName, PendingFile, WriteOptions};
 use raywalk::render::{Film, Planes};
 use std::path::Path;
@@ -22,6 +23,16 @@ pub fn check_planes(output: Option<&Path>, planes: Planes) -> Result<(), Failure
     let holds = output.map(Format::of).transpose()?.is_some_and(Format::keeps_planes);
     if planes != Planes::default() && !holds {
         return Err(Failure::Usage("--aov needs an output that ends in .exr".to_owned()));
+    }
+    Ok(())
+}
+
+/// Refuses a map for a file that keeps linear colour.
+pub fn check_map(output: Option<&Path>, map: Map) -> Result<(), Failure> {
+    if map != Map::Picture && output.map(Format::of).transpose()?.is_some_and(Format::keeps_planes) {
+        return Err(Failure::Usage(
+            "--map paints 8-bit pictures, such as .png; the planes themselves are --aov".to_owned(),
+        ));
     }
     Ok(())
 }
@@ -71,5 +82,13 @@ mod tests {
             assert_eq!(check_planes(wrong, planes).expect_err("no plane").exit_code(), Failure::WRONG_USAGE);
             assert!(check_planes(wrong, Planes::default()).is_ok());
         }
+    }
+
+    #[test]
+    fn maps_need_eight_bits() {
+        assert!(check_map(Some(Path::new("a.png")), Map::Cost).is_ok() && check_map(None, Map::Cost).is_ok());
+        assert!(check_map(Some(Path::new("a.exr")), Map::Picture).is_ok());
+        let refused = check_map(Some(Path::new("a.exr")), Map::Cost).expect_err("a map is no light");
+        assert_eq!(refused.exit_code(), Failure::WRONG_USAGE);
     }
 }

@@ -475,6 +475,20 @@ fn a_closed_pipe_is_no_failure() {
     }
 }
 
+#[test]
+fn maps_are_pictures_of_eight_bits() {
+    let bench = Bench::new();
+    bench.write("scene.json", SCENE);
+    let mut pictures = Vec::new();
+    for map in ["picture", "decisions", "cost", "depth", "normals", "objects", "error"] {
+        bench.done(&format!("render scene.json --size 40x30 --preset balanced --map {map} -o {map}.png"));
+        pictures.push(fs::read(bench.path(&format!("{map}.png"))).expect("it was written"));
+    }
+    assert!((1..pictures.len()).all(|i| !pictures[..i].contains(&pictures[i])), "two maps are alike");
+    assert!(bench.refused(2, "render scene.json --map cost -o cost.exr").contains("--aov"));
+    assert!(bench.refused(2, "render scene.json --map colour -o cost.png").contains("decisions"));
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_is_exit_130_and_leaves_nothing() {

@@ -16,6 +16,7 @@ mod formats;
 mod gltf;
 mod imports;
 mod interpolation;
+mod maps;
 mod our_scenes;
 mod overlay;
 #[path = "../common/picture_bits.rs"]

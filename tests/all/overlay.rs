@@ -2,17 +2,20 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use raywalk::app::exam::{Exam, RowCost, Subject};
 use raywalk::app::history::History;
 use raywalk::app::input::HELP;
 use raywalk::app::inspection::Inspection;
 use raywalk::app::labels::Labels;
 use raywalk::app::lighting::Dial;
+use raywalk::app::maps::{Class, Key, Legend, Map, Scale};
+use raywalk::app::methods::{self, Methods, Side};
 use raywalk::app::overlay::{self, Change, Notices, Showing, Shown, Tuning, View, theme};
 use raywalk::app::scenes::{Failure, Loading, Report, Wish};
 use raywalk::app::survey::{End, Point, Survey};
 use raywalk::geometry::{Aabb, Geometry};
 use raywalk::math::simd;
-use raywalk::measure::metric::{METRICS, metric};
+use raywalk::measure::metric::{METRICS, Score, metric};
 use raywalk::measure::tune::Bound;
 use raywalk::render::FrameStats;
 use raywalk::scene::progress::Step;
@@ -56,6 +59,7 @@ struct Panel {
     inspection: Option<Inspection>,
     notices: Notices,
     labels: Labels,
+    methods: Methods,
     changes: Vec<Change>,
 }
 
@@ -65,6 +69,7 @@ impl Panel {
         let shown = Shown::default();
         let (history, showing) = (History::default(), Showing::AsSet);
         let bound = Bound::parse("flip=0.01").expect("right");
+        let methods = Methods::new(&settings);
         Self {
             scene: scene(),
             settings,
@@ -79,6 +84,7 @@ impl Panel {
             inspection: None,
             notices: Notices::default(),
             labels: Labels::default(),
+            methods,
             changes: Vec::new(),
         }
     }
@@ -86,7 +92,7 @@ impl Panel {
     fn show(&mut self, ui: &mut egui::Ui) {
         let view = View {
             scene: &self.scene,
-            settings: &self.settings,
+            settings: self.methods.edited(&self.settings),
             stats: &self.stats,
             history: &self.history,
             resting: false,
@@ -99,6 +105,8 @@ impl Panel {
             sensitivity: 0.12,
             invert_look: false,
             ui_scale: 1.0,
+            methods: &self.methods,
+            left: &self.settings,
             tuning: Tuning {
                 bound: self.bound,
                 survey: self.survey.as_ref(),
@@ -117,6 +125,8 @@ impl Panel {
         let changes = overlay::show(ui, &view, self.shown);
         for change in &changes {
             match change {
+                Change::Settings(settings) if self.methods.edits_right() => self.methods.split.right = settings.clone(),
+                Change::Methods(change) => self.methods.apply(change, &self.settings),
                 Change::Settings(settings) => self.settings = settings.clone(),
                 Change::Bound(bound) => self.bound = *bound,
                 _ => {}
@@ -382,6 +392,9 @@ fn what_the_picture_is_stands_below_the_status_line() {
         (Showing::Moving { preset: None, scale: 0.5 }, Settings::fast(), "moving: scale 0.5"),
         (Showing::Refined(9), Settings::exact(), "refined 9/16"),
         (Showing::Refined(16), Settings::exact(), "at rest: 16 samples"),
+        (Showing::Exact(None), Settings::fast(), "the exact picture, while X is held"),
+        (Showing::Exact(Some(16)), Settings::fast(), "the exact picture, 16 samples, while X is held"),
+        (Showing::ExactSoon, Settings::fast(), "tracing the exact picture"),
     ] {
         let mut panel = Panel::new();
         (panel.showing, panel.settings, panel.shown.panel) = (showing, settings, false);
@@ -420,7 +433,7 @@ fn tuning(survey: Option<Survey>) -> Harness<'static, Panel> {
     let mut harness = panel.harness();
     assert!(harness.query_by_label("Measure front").is_none(), "closed at first");
     // What is above is closed, so that there is room.
-    for section in ["Settings", "Last frame", "Time against error"] {
+    for section in ["Settings", "Last frame", "What the methods do", "Time against error"] {
         harness.get_by_label(section).click();
         harness.run();
     }
@@ -585,4 +598,135 @@ fn a_thing_that_was_pointed_at_is_told_of() {
     harness.get_by_label("Close").click();
     harness.run();
     assert_eq!(harness.state_mut().changes.pop(), Some(Change::CloseInspection));
+}
+
+/// A panel with room for its section on what the methods do.
+fn methods_panel(panel: Panel) -> Harness<'static, Panel> {
+    let mut harness = panel.harness();
+    for section in ["Settings", "Last frame"] {
+        harness.get_by_label(section).click();
+        harness.run();
+    }
+    harness
+}
+
+#[test]
+fn every_map_can_be_chosen_and_the_status_line_says_which() {
+    for map in Map::ALL.into_iter().skip(1) {
+        let mut harness = methods_panel(Panel::new());
+        harness.get_by_label("map").click();
+        harness.run();
+        harness.get_by_role_and_label(egui::accesskit::Role::Button, map.name()).click();
+        harness.run();
+        assert_eq!(harness.state().changes, [Change::Methods(methods::Change::Map(map))]);
+        harness.get_by_label(&format!("map of {}, as set: 1 sample", map.name()));
+    }
+}
+
+#[test]
+fn a_legend_says_what_colors_mean_and_goes_with_the_overlay() {
+    let class = |name, share| Class { name, color: [200, 100, 0], shares: vec![share] };
+    let classes = Key::Classes(vec![class("certified", 0.75), class("traced", 0.25)]);
+    let marks = vec![(0.0, "0".to_owned()), (1.0, "255".to_owned())];
+    let scale = Key::Scale(Scale { marks, unit: "steps of 255", sums: vec!["max 17, RMSE 0.31".to_owned()] });
+    for (map, key, words) in [
+        (Map::Decisions, classes, [" 75.0 %", "traced"]),
+        (Map::Error, scale, ["error: steps of 255", "max 17, RMSE 0.31"]),
+    ] {
+        let mut panel = Panel::new();
+        panel.methods.map = map;
+        panel.methods.legend = Some(Legend { map, key });
+        panel.shown.panel = false;
+        let mut harness = panel.harness();
+        for words in words {
+            harness.get_by_label(words);
+        }
+        harness.state_mut().showing = Showing::Exact(None);
+        harness.run();
+        assert!(harness.query_by_label(words[0]).is_none(), "it is not the map that is seen");
+        harness.state_mut().showing = Showing::AsSet;
+        harness.state_mut().shown.overlay = false;
+        harness.run();
+        assert!(harness.query_by_label(words[0]).is_none());
+    }
+}
+
+#[test]
+fn two_sides_are_edited_apart_and_told_at_the_divider() {
+    let mut harness = methods_panel(Panel::new());
+    harness.get_by_label("side by side").click();
+    harness.run();
+    harness.state_mut().methods.split.milliseconds = [14.24, 61.3];
+    harness.get_by_label("Settings").click();
+    harness.run();
+    harness.get_by_label("balanced | 14.2 ms");
+    harness.get_by_label("exact | 61.3 ms");
+    harness.get_by_label("right").click();
+    harness.run();
+    harness.get_by_label("fast").click();
+    harness.run();
+    assert_eq!(harness.state().settings, Settings::balanced(), "the left side stays");
+    assert_eq!(harness.state().methods.split.right, Settings::fast());
+    harness.get_by_label("fast | 61.3 ms");
+    harness.get_by_label("Copy left to right").click();
+    harness.run();
+    assert_eq!(harness.state().methods.split.right, Settings::balanced());
+    assert_eq!(harness.state().methods.split.edited, Side::Right);
+}
+
+#[test]
+fn the_divider_is_dragged_with_the_pointer() {
+    let mut panel = Panel::new();
+    panel.methods.split.is_on = true;
+    panel.shown.panel = false;
+    let mut harness = panel.harness();
+    harness.run();
+    harness.drag_at(egui::pos2(400.0, 900.0));
+    harness.run();
+    harness.hover_at(egui::pos2(560.0, 940.0));
+    harness.run();
+    harness.drop_at(egui::pos2(560.0, 940.0));
+    harness.run();
+    let share = harness.state().methods.split.share();
+    assert!((share - 0.7).abs() < 0.005, "{share}");
+}
+
+#[test]
+fn errors_and_costs_are_measured_on_demand() {
+    let mut harness = methods_panel(Panel::new());
+    harness.get_by_label("Measure errors").click();
+    harness.run();
+    harness.get_by_label("Measure costs").click();
+    harness.run();
+    let asked = [methods::Change::MeasureErrors, methods::Change::MeasureCosts].map(Change::Methods);
+    assert_eq!(harness.state().changes, asked);
+
+    let mut exam = Exam::new(Subject::Errors, Camera::default(), Settings::balanced(), (16, 9));
+    exam.errors = vec![("psnr", Score::Number(47.123))];
+    harness.state_mut().methods.exam = Some(exam.clone());
+    harness.run();
+    harness.get_by_label("47.12 dB");
+    harness.get_by_label("Stop measuring").click();
+    harness.run();
+    assert_eq!(harness.state().changes[2..], [Change::Methods(methods::Change::Stop)]);
+    exam.has_ended = true;
+    harness.state_mut().methods.exam = Some(exam);
+    harness.state_mut().settings = Settings::fast();
+    harness.run();
+    harness.get_by_label("measured with other settings");
+}
+
+#[test]
+fn what_a_setting_saves_stands_beside_it_until_settings_change() {
+    let mut panel = Panel::new();
+    let mut exam = Exam::new(Subject::Costs, Camera::default(), panel.settings.clone(), (16, 9));
+    let other = "off".to_owned();
+    exam.costs = vec![RowCost { row: "shadow-cache", other, cpu_ms: 62.0, other_ms: 100.0, is_bound: false }];
+    exam.has_ended = true;
+    panel.methods.exam = Some(exam);
+    let mut harness = panel.harness();
+    harness.get_by_label("-38 %");
+    harness.state_mut().settings.shadows = false;
+    harness.run();
+    assert!(harness.query_by_label("-38 %").is_none());
 }

@@ -10,10 +10,10 @@ use egui::{ComboBox, DragValue, Grid, Response, RichText, Slider, Ui};
 /// Whole-number ranges wider than this get a number to drag: on a slider every pixel would be a leap.
 const WIDEST_SLIDER: f64 = 128.0;
 
-/// One row per setting: name, control, and what the value promises.
+/// One row per setting: name, control, what the value promises, and what it costs or saves once that is measured.
 pub fn settings(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     let mut settings = view.settings.clone();
-    Grid::new("settings").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
+    Grid::new("settings").num_columns(4).spacing([8.0, 4.0]).show(ui, |ui| {
         for row in ROWS {
             let value = (row.get)(&settings);
             let name = ui.label(RichText::new(row.name).color(theme::WEAK)).on_hover_text(row.help);
@@ -21,6 +21,10 @@ pub fn settings(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
             response.labelled_by(name.id).on_hover_text(row.help);
             if let Some(promise) = row.promise(&value) {
                 ui.label(RichText::new(promise.to_string()).small().color(theme::promise_color(promise)));
+            }
+            if let Some(cost) = view.methods.cost(row.name, view.settings) {
+                let color = if cost.change() < 0.0 { theme::ACCENT } else { theme::WEAK };
+                ui.label(RichText::new(cost.short()).small().color(color)).on_hover_text(cost.words());
             }
             ui.end_row();
             if let Some(wanted) = wanted {

@@ -5,11 +5,14 @@
 
 mod bars;
 mod controls;
+mod divider;
 mod figures;
 mod graph;
 mod help;
 mod inspection;
+mod legend;
 mod lights;
+mod methods;
 pub mod notice;
 mod scenes;
 pub mod theme;
@@ -23,6 +26,8 @@ use super::history::History;
 use super::inspection::Inspection;
 use super::labels::Labels;
 use super::lighting::Dial;
+use super::maps::Map;
+use super::methods::{self as seen, Methods};
 use super::scenes::{Report, Wish};
 use crate::measure::tune::Bound;
 use crate::render::FrameStats;
@@ -66,6 +71,10 @@ pub struct View<'a> {
     pub invert_look: bool,
     /// How many times as large as usual panel and text are.
     pub ui_scale: f32,
+    /// What is to be seen of the methods; the settings are those of the side that is edited.
+    pub methods: &'a Methods,
+    /// The settings of the left side, or of all of the picture.
+    pub left: &'a Settings,
     /// What is known of other settings.
     pub tuning: Tuning<'a>,
     /// What there is to say of scenes.
@@ -100,9 +109,18 @@ pub enum Showing {
     },
     /// At rest, with so many samples a pixel of 16.
     Refined(u32),
+    /// The exact picture, refined or not.
+    Exact(Option<u32>),
+    /// The exact picture will be shown.
+    ExactSoon,
 }
 
 impl Showing {
+    /// Whether it is, or will be, the exact picture.
+    fn is_exact(self) -> bool {
+        matches!(self, Self::Exact(_) | Self::ExactSoon)
+    }
+
     /// In words: "moving: fast, scale 0.7", "refined 9/16", "at rest: 16 samples".
     fn words(self, settings: &Settings) -> String {
         match self {
@@ -116,6 +134,9 @@ impl Showing {
                 let lowered: Vec<String> = preset.map(str::to_owned).into_iter().chain(scale).collect();
                 format!("moving: {}", lowered.join(", "))
             }
+            Self::Exact(Some(samples)) => format!("the exact picture, {samples} samples, while X is held"),
+            Self::Exact(None) => "the exact picture, while X is held".to_owned(),
+            Self::ExactSoon => "tracing the exact picture".to_owned(),
             Self::Refined(SAMPLES) => format!("at rest: {SAMPLES} samples"),
             Self::Refined(samples) => format!("refined {samples}/{SAMPLES}"),
         }
@@ -180,6 +201,8 @@ pub enum Change {
     StopSearch,
     /// Panel and text this many times as large as usual.
     UiScale(f32),
+    /// Something of what is to be seen of the methods.
+    Methods(seen::Change),
     /// Open or close the panel.
     TogglePanel,
     /// Something about scenes.
@@ -205,7 +228,11 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
     }
     inspection::show(ui, view, &mut changes);
     let available = ui.ctx().content_rect();
-    egui::Area::new(egui::Id::unique("overlay"))
+    if !view.showing.is_exact() {
+        divider::show(ui, view, available, &mut changes);
+        legend::show(ui, view, available);
+    }
+    let area = egui::Area::new(egui::Id::unique("overlay"))
         .fixed_pos(available.min + egui::vec2(MARGIN, MARGIN))
         .default_size(available.size())
         .constrain(false)
@@ -228,6 +255,10 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
     if shown.help {
         help::show(ui, view.labels, &mut changes);
     }
+    if view.methods.split.is_on {
+        // Where they meet, the divider lies under the panel, though it was used last.
+        ui.ctx().move_to_top(area.response.layer_id);
+    }
     changes
 }
 
@@ -236,7 +267,7 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
     ui.horizontal(|ui| {
         let is_refining = matches!(view.showing, Showing::Refined(samples) if samples < SAMPLES);
         let rate = match view.history.rate() {
-            _ if view.resting && view.tuning.is_measuring() => "measuring".to_owned(),
+            _ if view.resting && (view.tuning.is_measuring() || view.methods.is_measuring()) => "measuring".to_owned(),
             _ if view.resting && is_refining => "refining".to_owned(),
             _ if view.resting => "idle".to_owned(),
             Some(rate) if rate < 9.95 => format!("{rate:.1} fps"),
@@ -258,7 +289,7 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
         });
     });
     ui.horizontal(|ui| {
-        ui.label(RichText::new(view.showing.words(view.settings)).small().color(theme::WEAK))
+        ui.label(RichText::new(what_is_seen(view)).small().color(theme::WEAK))
             .on_hover_text("what the picture is; see refine-at-rest and target-fps");
         if let Some(activity) = view.activity {
             ui.label(RichText::new(activity).small().strong().color(theme::WARNING));
@@ -266,13 +297,29 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
     });
 }
 
+/// What one is looking at: the map if it is one, the sides, and how the picture was made.
+fn what_is_seen(view: &View<'_>) -> String {
+    let words = view.showing.words(view.left);
+    if view.showing.is_exact() {
+        return words;
+    }
+    let map = match view.methods.map {
+        Map::Picture => String::new(),
+        map => format!("map of {}, ", map.name()),
+    };
+    let sides = if view.methods.split.is_on { "two settings side by side, left " } else { "" };
+    format!("{map}{sides}{words}")
+}
+
 fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     graph::show(ui, view.history);
     section(ui, "Settings", true, |ui| {
+        methods::sides(ui, view, changes);
         presets(ui, view, changes);
         controls::settings(ui, view, changes);
     });
     section(ui, "Last frame", true, |ui| figures::show(ui, view.stats));
+    section(ui, "What the methods do", true, |ui| methods::show(ui, view, changes));
     section(ui, "View", true, |ui| controls::view(ui, view, changes));
     section(ui, "Time against error", false, |ui| tuning::show(ui, view, changes));
     section(ui, "Lights", false, |ui| lights::show(ui, view, changes));
@@ -288,7 +335,7 @@ fn presets(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Preset").color(theme::WEAK));
         for preset in PRESETS {
-            let settings = of_preset(preset, view);
+            let settings = of_preset(preset, view.settings, view.scene);
             let selected = *view.settings == settings;
             if ui.selectable_label(selected, preset.name).on_hover_text(preset.help).clicked() && !selected {
                 changes.push(Change::Settings(settings));
@@ -298,8 +345,8 @@ fn presets(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
 }
 
 /// The settings of a preset, as this scene is drawn by this machine in this window.
-fn of_preset(preset: &Preset, view: &View<'_>) -> Settings {
+fn of_preset(preset: &Preset, current: &Settings, scene: &Scene) -> Settings {
     // The depth "scene" and the scene's own number are the same.
-    let depth = view.settings.depth.filter(|depth| *depth == view.scene.render.max_depth);
-    Settings { depth, ..(preset.settings)() }.in_place_of(view.settings)
+    let depth = current.depth.filter(|depth| *depth == scene.render.max_depth);
+    Settings { depth, ..(preset.settings)() }.in_place_of(current)
 }

@@ -7,7 +7,7 @@ use egui::{Align2, Color32, ProgressBar, RichText, ScrollArea, Ui};
 use std::path::Path;
 
 /// Widest that a box of text is, in points.
-const WIDTH: f32 = 560.0;
+const WIDTH: f32 = 520.0;
 /// Distance from the window's sides in points, and from its lower edge, where notices come and go.
 const MARGIN: f32 = 24.0;
 const ABOVE_NOTICES: f32 = 96.0;
@@ -39,7 +39,9 @@ pub fn boxes(ui: &Ui, view: &View<'_>, changes: &mut Vec<Change>) {
                 in_box(ui, theme::ACCENT, |ui| loading_box(ui, loading, changes));
             }
             if let Some(hint) = hint {
-                in_box(ui, theme::ACCENT, |ui| drop(ui.label(RichText::new(*hint).color(theme::STRONG))));
+                in_box(ui, theme::ACCENT, |ui| {
+                    ui.label(RichText::new(*hint).color(theme::STRONG));
+                });
             }
         });
 }
