@@ -372,6 +372,7 @@ impl Session {
         }
         match command {
             Some(Command::ReleasePointer) if self.capture.is_active() => {
+                self.journey.stop_replay();
                 self.capture.release(&WindowHost(&self.window));
             }
             Some(Command::ReleasePointer) if self.journey.stop_replay() => {}
@@ -595,6 +596,7 @@ impl Session {
         self.window.set_title(&title(&scene));
         self.inspection = None;
         self.lit = self.lighting.lit(&scene);
+        self.walker.lose_footing();
         self.scene = scene;
     }
 

@@ -134,9 +134,7 @@ impl Walker {
 
     /// Goes to `camera` and takes its field of view. Speed stays. On foot, one falls from there at the next step only.
     pub fn go_to(&mut self, camera: Camera) {
-        if let Way::Walk(gait) = &mut self.way {
-            *gait = None;
-        }
+        self.lose_footing();
         (self.upright, self.pose) = stand(&camera);
         self.fov = camera.fov;
         self.stance = camera;
@@ -246,8 +244,8 @@ impl Walker {
         self.land(geometry)
     }
 
-    /// Takes another scene, the same or not: whoever walks looks for the floor anew.
-    pub fn enter_scene(&mut self) {
+    /// What surrounds the walker has changed: on foot, they look for the floor anew when they next move.
+    pub fn lose_footing(&mut self) {
         if let Way::Walk(gait) = &mut self.way {
             *gait = None;
         }
