@@ -303,7 +303,7 @@ impl Session {
         }
         match command {
             Some(Command::ReleasePointer) if self.capture.is_active() => {
-                self.capture.release(&WindowHost(&self.window))
+                self.capture.release(&WindowHost(&self.window));
             }
             Some(Command::ReleasePointer) => self.shown.help = false,
             Some(Command::ToggleHelp) => {

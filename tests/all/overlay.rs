@@ -174,7 +174,7 @@ fn the_help_fits_in_small_windows() {
             .with_context_setup(theme::apply)
             .build_ui_state(|ui, panel: &mut Panel| panel.show(ui), panel);
         harness.run();
-        let rect = harness.get_by_label("Help").rect();
+        let rect = harness.get_by_label("Close window").rect();
         assert!(rect.top() >= 0.0 && rect.left() >= 0.0, "{rect:?} in {size}");
     }
 }
