@@ -232,6 +232,13 @@ impl Settings {
         settings
     }
 
+    /// The same, in the place of `others`: threads, instruction set, presentation and what the window does at rest and in
+    /// motion stay as they are there, of which a preset says nothing.
+    pub fn in_place_of(self, others: &Self) -> Self {
+        let Self { threads, simd, refine_at_rest, target_fps, present, .. } = *others;
+        Self { threads, simd, refine_at_rest, target_fps, present, ..self }
+    }
+
     /// The same, by a ray for every pixel: what errors are held against.
     pub fn reference(&self) -> Self {
         Self { visibility: Visibility::Full, ..self.without_approximations() }

@@ -70,7 +70,7 @@ fn walk(scene: &Scene, camera: &Camera, settings: &Settings, scratch: &mut Scrat
 #[test]
 fn a_frame_allocates_nothing_once_warm() {
     let (options, no_planes) = (all_settings(), Planes::default());
-    let all_planes = Planes { depth: true, normal: true, object: true, primitive: true };
+    let all_planes = Planes { depth: true, normal: true, object: true, primitive: true, decision: true, cost: true };
     let mut wrong = Vec::new();
     for scene in scenes() {
         let camera = scene.cameras[0].camera;

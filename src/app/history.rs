@@ -1,10 +1,14 @@
 //! Frame times of the recent past: the rate, the percentiles, the graph.
 
+use crate::measure::statistics::Spread;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// Frames that are remembered.
-const CAPACITY: usize = 240;
+/// Frames that are remembered: enough that a hundredth of them is more than a handful.
+const CAPACITY: usize = 1000;
+/// What "1 % low" means here. Elsewhere the same words stand for at least two other figures.
+pub const ONE_PERCENT_LOW: &str = "1 % low: frames a second at the mean time of the slowest hundredth of the last 1000 \
+                                   frames (of the slowest one where there are fewer than 100)";
 /// The rate is counted over this long.
 const RATE_WINDOW: Duration = Duration::from_secs(1);
 /// A pause beyond the frame's own time that is rest, not slowness.
@@ -15,6 +19,15 @@ const REST: Duration = Duration::from_millis(250);
 struct Entry {
     finished: Instant,
     milliseconds: f64,
+}
+
+/// What the overlay says of the remembered frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Summary {
+    /// Milliseconds a frame.
+    pub spread: Spread,
+    /// Frames a second, see [`ONE_PERCENT_LOW`].
+    pub one_percent_low: f64,
 }
 
 /// The last frames, oldest first.
@@ -65,12 +78,13 @@ impl History {
         self.entries.back().is_none_or(|newest| now.saturating_duration_since(newest.finished) > REST)
     }
 
-    /// Milliseconds that `percent` of the remembered frames stay within (nearest rank): 50 is the median, 100 the maximum.
-    pub fn percentile(&self, percent: f64) -> Option<f64> {
+    /// How the times of the remembered frames spread; `None` for no frames.
+    pub fn summary(&self) -> Option<Summary> {
         let mut sorted: Vec<f64> = self.milliseconds().collect();
         sorted.sort_by(f64::total_cmp);
-        let rank = (percent / 100.0 * sorted.len() as f64).ceil() as usize;
-        sorted.get(rank.max(1) - 1).copied()
+        let slowest = sorted.len().div_ceil(100);
+        let mean = sorted.iter().rev().take(slowest).sum::<f64>() / slowest as f64;
+        (!sorted.is_empty()).then(|| Summary { spread: Spread::of(&sorted), one_percent_low: 1e3 / mean.max(1e-3) })
     }
 }
 
@@ -108,15 +122,24 @@ mod tests {
     }
 
     #[test]
-    fn percentiles_are_nearest_ranks() {
+    fn one_slow_frame_in_a_thousand_is_a_tenth_of_the_slowest_hundredth() {
         let now = Instant::now();
         let mut history = History::default();
-        (0..99).for_each(|_| history.record(now, 8.0));
+        assert_eq!(history.summary(), None);
+        (0..999).for_each(|_| history.record(now, 8.0));
         history.record(now, 200.0);
-        assert_eq!(history.percentile(50.0), Some(8.0));
-        assert_eq!(history.percentile(99.0), Some(8.0));
-        assert_eq!(history.percentile(100.0), Some(200.0));
-        assert_eq!(History::default().percentile(50.0), None);
+        let Summary { spread, one_percent_low } = history.summary().expect("frames");
+        assert_eq!((spread.median, spread.p95, spread.p99, spread.max), (8.0, 8.0, 8.0, 200.0));
+        // The slowest ten take 9 * 8 + 200 ms together.
+        assert!((one_percent_low - 1e3 / 27.2).abs() < 1e-9, "{one_percent_low}");
+    }
+
+    #[test]
+    fn of_a_few_frames_the_slowest_is_the_low() {
+        let now = Instant::now();
+        let mut history = History::default();
+        [10.0, 40.0, 20.0].into_iter().for_each(|ms| history.record(now, ms));
+        assert_eq!(history.summary().expect("frames").one_percent_low, 25.0);
     }
 
     #[test]

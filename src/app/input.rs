@@ -24,6 +24,8 @@ pub enum Hold {
     Fast,
     /// Slower.
     Slow,
+    /// The exact picture.
+    Exact,
 }
 
 /// What a key does once, when it goes down.
@@ -33,6 +35,8 @@ pub enum Command {
     Quit,
     /// Let the pointer go, or else give up what is being loaded.
     ReleasePointer,
+    /// Open or close the help.
+    ToggleHelp,
     /// Open or close the panel.
     TogglePanel,
     /// Show or hide everything that lies over the picture.
@@ -47,6 +51,32 @@ pub enum Command {
     Inspect,
     /// Walk instead of flying, or the reverse.
     ToggleWalking,
+    /// Keep the picture as a file.
+    Screenshot,
+    /// Fill the screen, or return to a window.
+    ToggleFullscreen,
+    /// A larger panel and text.
+    EnlargeUi,
+    /// A smaller panel and text.
+    ReduceUi,
+    /// Panel and text of the usual size.
+    ResetUi,
+    /// Keep the view under a number.
+    StoreBookmark(u8),
+    /// Go to the view of a number.
+    GoToBookmark(u8),
+    /// Put the camera on the clipboard.
+    CopyCamera,
+    /// Go to the camera on the clipboard.
+    PasteCamera,
+    /// Start or stop recording a camera path.
+    ToggleRecording,
+    /// Start or stop replaying the last one.
+    ToggleReplay,
+    /// The next map of what the methods do.
+    NextMap,
+    /// Show two settings side by side, or no longer.
+    ToggleSplit,
 }
 
 /// Keys that act while held. Codes name positions, so that WASD is the same block of keys on every layout.
@@ -61,13 +91,14 @@ pub const HOLD_KEYS: &[(KeyCode, Hold)] = &[
     (KeyCode::ShiftRight, Hold::Fast),
     (KeyCode::AltLeft, Hold::Slow),
     (KeyCode::AltRight, Hold::Slow),
+    (KeyCode::KeyX, Hold::Exact),
 ];
 
 /// Keys that act once; `true` where Ctrl must be held.
 pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::KeyQ, true, Command::Quit),
     (KeyCode::Escape, false, Command::ReleasePointer),
-    (KeyCode::F1, false, Command::TogglePanel),
+    (KeyCode::F1, false, Command::ToggleHelp),
     (KeyCode::Tab, false, Command::TogglePanel),
     (KeyCode::KeyH, false, Command::ToggleOverlay),
     (KeyCode::Home, false, Command::Home),
@@ -75,6 +106,38 @@ pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::F5, false, Command::Reload),
     (KeyCode::KeyI, false, Command::Inspect),
     (KeyCode::KeyG, false, Command::ToggleWalking),
+    (KeyCode::F12, false, Command::Screenshot),
+    (KeyCode::F11, false, Command::ToggleFullscreen),
+    (KeyCode::Equal, true, Command::EnlargeUi),
+    (KeyCode::NumpadAdd, true, Command::EnlargeUi),
+    (KeyCode::Minus, true, Command::ReduceUi),
+    (KeyCode::NumpadSubtract, true, Command::ReduceUi),
+    (KeyCode::Digit0, true, Command::ResetUi),
+    (KeyCode::Numpad0, true, Command::ResetUi),
+    (KeyCode::KeyC, true, Command::CopyCamera),
+    (KeyCode::KeyV, true, Command::PasteCamera),
+    (KeyCode::KeyR, false, Command::ToggleRecording),
+    (KeyCode::KeyP, false, Command::ToggleReplay),
+    (KeyCode::Digit1, false, Command::GoToBookmark(1)),
+    (KeyCode::Digit1, true, Command::StoreBookmark(1)),
+    (KeyCode::Digit2, false, Command::GoToBookmark(2)),
+    (KeyCode::Digit2, true, Command::StoreBookmark(2)),
+    (KeyCode::Digit3, false, Command::GoToBookmark(3)),
+    (KeyCode::Digit3, true, Command::StoreBookmark(3)),
+    (KeyCode::Digit4, false, Command::GoToBookmark(4)),
+    (KeyCode::Digit4, true, Command::StoreBookmark(4)),
+    (KeyCode::Digit5, false, Command::GoToBookmark(5)),
+    (KeyCode::Digit5, true, Command::StoreBookmark(5)),
+    (KeyCode::Digit6, false, Command::GoToBookmark(6)),
+    (KeyCode::Digit6, true, Command::StoreBookmark(6)),
+    (KeyCode::Digit7, false, Command::GoToBookmark(7)),
+    (KeyCode::Digit7, true, Command::StoreBookmark(7)),
+    (KeyCode::Digit8, false, Command::GoToBookmark(8)),
+    (KeyCode::Digit8, true, Command::StoreBookmark(8)),
+    (KeyCode::Digit9, false, Command::GoToBookmark(9)),
+    (KeyCode::Digit9, true, Command::StoreBookmark(9)),
+    (KeyCode::KeyV, false, Command::NextMap),
+    (KeyCode::KeyB, false, Command::ToggleSplit),
 ];
 
 /// The help shown in the overlay: keys and what they do.
@@ -84,14 +147,24 @@ pub const HELP: &[(&str, &str)] = &[
     ("Shift, Alt", "faster, slower"),
     ("Wheel", "change the speed"),
     ("Click", "look with the mouse"),
-    ("Esc", "let the mouse go; stop loading"),
+    ("Esc", "let the mouse go; close the help; stop loading"),
     ("G", "walk or fly"),
     ("Home", "back to the start"),
-    ("F1, Tab", "this panel"),
+    ("F1", "help"),
+    ("Tab", "this panel"),
+    ("1 to 9", "go to a bookmark; with Ctrl, set it"),
+    ("Ctrl+C, Ctrl+V", "copy, paste the camera"),
+    ("R, P", "record a camera path, replay it"),
+    ("V", "next map of what the methods do"),
+    ("X, held", "the exact picture"),
+    ("B", "two settings side by side"),
     ("H", "hide everything"),
     ("I, right click", "tell of the thing under the pointer"),
     ("Ctrl+O", "open a scene; or drop one on the window"),
     ("F5", "load the scene again"),
+    ("F11", "full screen"),
+    ("F12", "screenshot"),
+    ("Ctrl and +, -, 0", "panel larger, smaller, as usual"),
     ("Ctrl+Q", "quit"),
 ];
 
@@ -159,9 +232,14 @@ impl Keys {
         self.ctrl = false;
     }
 
+    /// Whether a key is down that does this.
+    pub fn is_held(&self, what: Hold) -> bool {
+        HOLD_KEYS.iter().any(|(code, hold)| *hold == what && self.down.contains(code))
+    }
+
     /// What the held keys ask for. Opposite keys cancel.
     pub fn motion(&self) -> Motion {
-        let held = |what: Hold| HOLD_KEYS.iter().any(|(code, hold)| *hold == what && self.down.contains(code));
+        let held = |what: Hold| self.is_held(what);
         let axis = |plus: Hold, minus: Hold| f64::from(i8::from(held(plus)) - i8::from(held(minus)));
         Motion {
             right: axis(Hold::Right, Hold::Left),
@@ -218,8 +296,8 @@ mod tests {
     #[test]
     fn commands_come_once_and_need_their_chord() {
         let mut keys = Keys::default();
-        assert_eq!(keys.press(code(KeyCode::F1), false), Some(Command::TogglePanel));
-        assert_eq!(keys.press(code(KeyCode::F1), true), None);
+        assert_eq!(keys.press(code(KeyCode::Tab), false), Some(Command::TogglePanel));
+        assert_eq!(keys.press(code(KeyCode::Tab), true), None);
         assert_eq!(keys.press(code(KeyCode::KeyQ), false), None);
         keys.set_ctrl(true);
         assert_eq!(keys.press(code(KeyCode::KeyQ), false), Some(Command::Quit));

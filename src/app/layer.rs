@@ -28,9 +28,12 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// An empty layer for `window`.
-    pub fn new(gpu: &Gpu, window: &Window) -> Self {
+    /// An empty layer for `window`, everything `ui_scale` times as large as usual.
+    pub fn new(gpu: &Gpu, window: &Window, ui_scale: f32) -> Self {
         let context = egui::Context::default();
+        // The keys for it are ours, so that they are told of and kept.
+        context.options_mut(|options| options.zoom_with_keyboard = false);
+        context.set_zoom_factor(ui_scale);
         super::overlay::theme::apply(&context);
         if gpu.is_software {
             // Every step of an animation would be paid for by the tracer.
@@ -41,6 +44,11 @@ impl Layer {
         let state =
             egui_winit::State::new(context.clone(), egui::ViewportId::ROOT, window, scale, window.theme(), max_side);
         Self { context, state, pointed_at: false }
+    }
+
+    /// Everything `ui_scale` times as large as usual, on top of what the display asks for.
+    pub fn set_scale(&self, ui_scale: f32) {
+        self.context.set_zoom_factor(ui_scale);
     }
 
     /// Tells egui of a window event; true when the overlay must be drawn anew.
@@ -84,6 +92,16 @@ impl Layer {
             .is_some_and(|layer| layer.order != egui::Order::Background)
     }
 
+    /// Puts a text on the clipboard.
+    pub fn copy(&mut self, text: String) {
+        self.state.set_clipboard_text(text);
+    }
+
+    /// The text on the clipboard, if there is one.
+    pub fn pasted(&mut self) -> Option<String> {
+        self.state.clipboard_text()
+    }
+
     /// Whether the overlay is being used with the pointer.
     pub fn is_pointed_at(&self) -> bool {
         self.pointed_at
@@ -107,7 +125,7 @@ impl Layer {
         pointer_is_free: bool,
         add_contents: impl FnMut(&mut egui::Ui),
     ) -> Option<Painting> {
-        let least = LEAST_SIZE * window.scale_factor() as f32;
+        let least = LEAST_SIZE * window.scale_factor() as f32 * self.context.zoom_factor();
         if (size.0 as f32) < least || (size.1 as f32) < least {
             return None;
         }

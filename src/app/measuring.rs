@@ -1,9 +1,12 @@
-//! A search on the tracing thread: frames that the window waits for come first, what is measured goes on in between.
+//! A search or an exam on the tracing thread: frames that the window waits for come first, what is measured goes on in
+//! between.
 
-use super::at_rest::AtRest;
+use super::exam::{Exam, Examiner};
 use super::lowering::Lowering;
+use super::methods::Aspect;
 use super::survey::{End, Survey};
 use super::tracer::{Job, Render, Word, Worker};
+use super::views::Views;
 use crate::measure::Run;
 use crate::measure::tune::{self, Stopped, Studio, Task, Trial};
 use crate::measure::watch::Watch;
@@ -13,58 +16,91 @@ use crate::settings::Settings;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// What both threads know of a search.
+/// What is to be measured.
+#[derive(Debug)]
+pub enum Inquiry {
+    /// Settings are searched.
+    Search(Box<(Task, Survey)>),
+    /// Errors or costs of the settings as they are.
+    Exam(Box<Exam>),
+}
+
+/// What both threads know of a search or an exam.
 #[derive(Debug, Default)]
 pub struct Search {
-    /// What is to be searched next.
-    pub asked: Option<(Arc<Scene>, Task, Survey)>,
-    /// The search under way has to stop.
+    /// What is to be measured next, and in which scene.
+    pub asked: Option<(Arc<Scene>, Inquiry)>,
+    /// What is under way has to stop.
     pub stop: bool,
     /// One of its frames is being traced.
     pub in_frame: bool,
-    /// What is known by now, to be taken once.
+    /// What is known of a search by now, to be taken once.
     pub survey: Option<Survey>,
+    /// What is known of an exam by now, to be taken once.
+    pub exam: Option<Exam>,
 }
 
-/// The studio of a search that shares its thread with the window's frames.
+/// The studio of what is measured on a thread that it shares with the window's frames.
 pub struct Measuring<'a> {
     worker: &'a Worker,
     render: Render<'a>,
-    at_rest: &'a mut AtRest,
+    views: &'a mut Views,
     word: &'a dyn Fn(Word),
     scene: Arc<Scene>,
     watch: Watch,
-    survey: Survey,
+    /// The search, if that is what it is.
+    survey: Option<Survey>,
     /// When the next frame of the window may begin.
     next_start: Instant,
 }
 
 impl<'a> Measuring<'a> {
-    /// Sets up a search in `scene` that tells of itself in `survey`.
+    /// Sets up what is needed for measuring in `scene`.
     pub fn new(
         worker: &'a Worker,
         render: Render<'a>,
-        at_rest: &'a mut AtRest,
+        views: &'a mut Views,
         word: &'a dyn Fn(Word),
         scene: Arc<Scene>,
-        survey: Survey,
     ) -> Self {
         let watch = Watch::over(CancelToken::default(), worker.cancel.clone());
-        Self { worker, render, at_rest, word, scene, watch, survey, next_start: Instant::now() }
+        Self { worker, render, views, word, scene, watch, survey: None, next_start: Instant::now() }
     }
 
-    /// Searches until there is an end.
-    pub fn run(mut self, task: &Task) {
+    /// Measures until there is an end.
+    pub fn run(mut self, inquiry: Inquiry) {
+        match inquiry {
+            Inquiry::Search(search) => {
+                let (task, survey) = *search;
+                self.survey = Some(survey);
+                self.search(&task);
+            }
+            Inquiry::Exam(mut exam) => {
+                exam.run(&mut self);
+                self.publish_exam(&exam);
+            }
+        }
+    }
+
+    fn search(&mut self, task: &Task) {
         self.publish();
-        match tune::tune(task, &mut self) {
-            Ok(found) => self.survey.ended(&found),
-            Err(Stopped) => self.survey.end = Some(End::Stopped),
+        let found = tune::tune(task, self);
+        if let Some(survey) = &mut self.survey {
+            match found {
+                Ok(found) => survey.ended(&found),
+                Err(Stopped) => survey.end = Some(End::Stopped),
+            }
         }
         self.publish();
     }
 
     fn publish(&self) {
-        self.worker.shared.lock().search.survey = Some(self.survey.clone());
+        self.worker.shared.lock().search.survey = self.survey.clone();
+        (self.word)(Word::Frame);
+    }
+
+    fn publish_exam(&self, exam: &Exam) {
+        self.worker.shared.lock().search.exam = Some(exam.clone());
         (self.word)(Word::Frame);
     }
 
@@ -87,7 +123,7 @@ impl<'a> Measuring<'a> {
             let Some(job) = exchange.begin_frame(&self.worker.cancel) else { return Ok(()) };
             drop(exchange);
             self.next_start = Instant::now() + self.worker.interval;
-            if self.worker.trace(job, self.render, self.at_rest) {
+            if self.worker.trace(job, self.render, self.views) {
                 (self.word)(Word::Frame);
             }
         }
@@ -116,7 +152,8 @@ impl Studio for Measuring<'_> {
     ) -> Result<Option<f64>, Stopped> {
         let (width, height) = (film.width(), film.height());
         let (scene, settings) = (Arc::clone(&self.scene), settings.clone());
-        let job = Job { scene, camera: *camera, settings, width, height, lowering: Lowering::NONE };
+        let (lowering, aspect) = (Lowering::NONE, Aspect::default());
+        let job = Job { scene, camera: *camera, settings, width, height, lowering, aspect };
         loop {
             self.serve()?;
             if !self.begin(longest) {
@@ -137,7 +174,16 @@ impl Studio for Measuring<'_> {
     }
 
     fn told(&mut self, share: f64, trials: &[Trial]) {
-        self.survey.measured(share, trials);
+        if let Some(survey) = &mut self.survey {
+            survey.measured(share, trials);
+        }
         self.publish();
+    }
+}
+
+impl Examiner for Measuring<'_> {
+    fn hear(&mut self, exam: &Exam) -> Result<(), Stopped> {
+        self.publish_exam(exam);
+        self.serve()
     }
 }

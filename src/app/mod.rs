@@ -1,4 +1,4 @@
-//! The window: input in, traced frames and the overlay out.
+//! The window: input in, traced frames and the overlay out; or the same walk in a [`terminal`].
 //!
 //! The main thread runs the event loop: it gathers input, moves the walker, uploads, draws and presents, each a
 //! matter of milliseconds. Frames are traced on a thread of their own ([`tracer`]), so that neither input nor the
@@ -6,21 +6,32 @@
 //!
 //! Architecture invariant: with nothing moved and nothing changed, nothing is traced, drawn or woken up for.
 
+pub mod bookmarks;
+pub mod config;
 pub mod error;
+pub mod exam;
 pub mod history;
 pub mod input;
 pub mod inspection;
+pub mod labels;
 pub mod lighting;
+pub mod maps;
+pub mod methods;
 pub mod overlay;
 pub mod present;
 pub mod scenes;
+pub mod screenshot;
 pub mod survey;
+pub mod terminal;
 pub mod walker;
 
 mod at_rest;
 mod capture;
+mod desktop;
 mod display;
+mod errands;
 mod gpu;
+mod journey;
 mod layer;
 mod look;
 mod lowering;
@@ -30,12 +41,16 @@ mod session;
 mod steering;
 mod tracer;
 mod viewer;
+mod views;
 
+pub use config::UI_SCALES;
 pub use error::AppError;
 
+use crate::picture::NumberedName;
 use crate::scene::{Camera, LoadOptions};
 use crate::settings::Settings;
-use scenes::{Arrival, Load, RecentFiles};
+use config::{Config, Store};
+use scenes::{Arrival, Load};
 use std::path::PathBuf;
 
 /// What to open the window on.
@@ -45,12 +60,18 @@ pub struct AppOptions {
     pub opening: Opening,
     /// How the user's scenes are loaded.
     pub load: LoadOptions,
-    /// The files that were opened in earlier walks.
-    pub recent: RecentFiles,
     /// How frames are traced at first.
     pub settings: Settings,
     /// Size of the window's inside in physical pixels.
     pub size: (u32, u32),
+    /// What the user's last window left, and where to keep what this one leaves; without a store, nothing is kept.
+    pub config: Config,
+    /// See `config`.
+    pub store: Option<Store>,
+    /// The window opens as the last one was, whatever `size` says.
+    pub as_before: bool,
+    /// Where screenshots go.
+    pub screenshots: NumberedName,
 }
 
 /// The scene that a window opens on.
@@ -70,8 +91,8 @@ pub struct AppExit {
     pub camera: Camera,
     /// The last settings.
     pub settings: Settings,
-    /// The files that were opened last.
-    pub recent: RecentFiles,
+    /// What could not be done at the end, one line each.
+    pub warnings: Vec<String>,
 }
 
 /// Opens the window and runs until it is closed. To be called on the main thread, once in a process.

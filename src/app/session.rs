@@ -2,35 +2,46 @@
 
 use super::at_rest::REST;
 use super::capture::{Capture, PointerHost};
+use super::config::{Keeper, UI_SCALES, WindowState};
+use super::desktop;
+use super::errands::{self, Errands};
 use super::error::AppError;
+use super::exam::{Exam, Subject};
 use super::gpu::{Gpu, Target};
 use super::history::History;
-use super::input::{Command, Keys};
+use super::input::{Command, Hold, Keys};
 use super::inspection::{self, Inspection};
+use super::journey::Journey;
+use super::labels::Labels;
 use super::layer::Layer;
 use super::lighting::Lighting;
-use super::lowering::{lowered, presets_below};
+use super::lowering::{Lowering, lowered, presets_below};
+use super::methods::{self, Methods};
 use super::overlay::{self, Change, Notices, Showing, Shown, Tuning, View};
 use super::pacing::{Limiter, Rates};
 use super::present::Presenter;
 use super::scenes::{Arrival, News, Scenes, Wish};
+use super::screenshot::{self, Camerawork, Place, Shot};
 use super::steering::Steering;
 use super::survey::{self, End, Survey};
 use super::tracer::{Job, TracedFrame, Tracer};
 use super::viewer::Call;
-use super::walker::Walker;
+use super::walker::{self, Walker};
 use super::{AppExit, AppOptions, Opening};
 use crate::measure::metric::{METRICS, metric};
 use crate::measure::tune::{Bound, Task};
+use crate::picture::NumberedName;
 use crate::render::FrameStats;
 use crate::scene::{self, Camera, Scene};
 use crate::settings::Settings;
 use glam::DVec2;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
+use winit::platform::modifier_supplement::KeyEventExtModifierSupplement;
 use winit::window::{CursorGrabMode, Window};
 
 /// Between two steps of the walker: finer than any display, so that a frame starts from a fresh place.
@@ -47,6 +58,8 @@ const SEARCH_BUDGET: Duration = Duration::from_secs(30);
 const TELL: Duration = Duration::from_millis(100);
 /// What is told where a walker does not fit.
 const NO_ROOM: &str = "There is no room to walk here: flying on";
+/// A step of the size of panel and text.
+const UI_STEP: f32 = 1.1;
 /// Pixels of smooth scrolling that count as one notch of a wheel.
 const PIXELS_PER_NOTCH: f64 = 40.0;
 
@@ -67,6 +80,8 @@ pub struct Session {
     settings: Settings,
     walker: Walker,
     keys: Keys,
+    labels: Labels,
+    journey: Journey,
     capture: Capture,
     /// Where the pointer is, in physical pixels.
     pointer: DVec2,
@@ -74,10 +89,18 @@ pub struct Session {
     stats: FrameStats,
     shown: Shown,
     notices: Notices,
+    keeper: Keeper,
+    /// The window opened as the last one was: no scene resizes it.
+    is_placed: bool,
+    ui_scale: f32,
+    errands: Errands,
+    screenshots: NumberedName,
+    camerawork: Camerawork,
     posted: Option<Job>,
     /// What the last frame shows, and with how many samples a pixel if it was refined.
     traced: Option<(Job, Option<u32>)>,
     steering: Steering,
+    methods: Methods,
     /// What the next search has to keep, and what is known of the last.
     bound: Bound,
     survey: Option<Survey>,
@@ -104,7 +127,7 @@ impl Session {
     ) -> Result<Self, AppError> {
         let wake = Arc::clone(&call);
         let mut scenes =
-            Scenes::new(options.load.clone(), options.recent.clone(), Arc::new(move || wake(Call::Scenes)));
+            Scenes::new(options.load.clone(), options.config.recent.clone(), Arc::new(move || wake(Call::Scenes)));
         let (scene, camera) = match &options.opening {
             Opening::Scene(arrival) => {
                 scenes.show(arrival);
@@ -117,9 +140,10 @@ impl Session {
                 (Arc::new(nothing), camera)
             }
         };
-        let attributes = Window::default_attributes()
-            .with_title(title(&scene))
-            .with_inner_size(PhysicalSize::new(options.size.0, options.size.1));
+        let attributes = Window::default_attributes().with_title(title(&scene));
+        let size = WindowState { size: options.size, ..WindowState::default() };
+        let place = options.config.window.filter(|_| options.as_before).unwrap_or(size);
+        let attributes = desktop::placed(attributes, place, event_loop);
         let window = event_loop.create_window(attributes).map_err(|error| AppError::NoDisplay(error.to_string()))?;
         let window = Arc::new(window);
         let display = event_loop.owned_display_handle();
@@ -127,30 +151,47 @@ impl Session {
         let millihertz = window.current_monitor().and_then(|monitor| monitor.refresh_rate_millihertz());
         let rates = Rates::new(millihertz, gpu.is_software);
         let now = Instant::now();
+        let mut keeper = Keeper::new(options.store.clone(), options.config.clone(), &options.settings);
+        keeper.open_window(place);
+        let is_placed = options.as_before && options.config.window.is_some();
+        let config = &keeper.config;
+        let mut walker = Walker::in_scene(&scene, camera);
+        walker.invert_look = config.invert_look;
+        walker.sensitivity = config.sensitivity.unwrap_or(walker.sensitivity);
+        let news = Arc::clone(&call);
         let mut session = Self {
             tracer: Tracer::start(rates.display, move |word| call(Call::Traced(word)))?,
-            layer: Layer::new(&gpu, &window),
+            layer: Layer::new(&gpu, &window, config.ui_scale),
             presenter: Presenter::new(&gpu, options.settings.present),
             gpu,
             window,
             display,
             settings: options.settings.clone(),
-            walker: Walker::in_scene(&scene, camera),
+            walker,
             scenes,
             lighting: Lighting::of(&scene),
             lit: Arc::clone(&scene),
             scene,
             inspection: None,
             keys: Keys::default(),
+            labels: Labels::default(),
+            journey: Journey::default(),
             capture: Capture::default(),
             pointer: DVec2::ZERO,
             history: History::default(),
             stats: FrameStats::default(),
-            shown: Shown::default(),
+            shown: Shown { panel: config.panel, ..Shown::default() },
             notices: Notices::default(),
+            ui_scale: config.ui_scale,
+            keeper,
+            is_placed,
+            errands: Errands::start(move || news(Call::Errand))?,
+            screenshots: options.screenshots.clone(),
+            camerawork: Camerawork::default(),
             posted: None,
             traced: None,
             steering: Steering::new(presets_below(&options.settings)),
+            methods: Methods::new(&options.settings),
             bound: overlay::usual_bound(metric("flip").unwrap_or(&METRICS[0])),
             survey: None,
             stands: (camera, None),
@@ -168,8 +209,61 @@ impl Session {
     }
 
     /// Ends the session and says where it stood.
-    pub fn close(self) -> AppExit {
-        AppExit { camera: self.walker.camera(), settings: self.settings.clone(), recent: self.scenes.recent().clone() }
+    pub fn close(mut self) -> AppExit {
+        let (camera, settings) = (self.walker.camera(), self.settings.clone());
+        self.save_config();
+        if let Some(shot) = self.camerawork.give_up() {
+            self.write(shot);
+        }
+        let warnings = self.errands.finish().into_iter().filter_map(|news| match news {
+            errands::News::Problem(text) => Some(text),
+            errands::News::Done(_) => None,
+        });
+        AppExit { camera, settings, warnings: warnings.collect() }
+    }
+
+    /// Brings what is remembered up to date and has it written, if there is anything new.
+    fn save_config(&mut self) {
+        if let Some(state) = desktop::state_of(&self.window) {
+            self.keeper.keep_window(state);
+        }
+        self.keeper.keep_settings(&self.settings);
+        let config = &mut self.keeper.config;
+        config.ui_scale = self.ui_scale;
+        config.invert_look = self.walker.invert_look;
+        config.sensitivity = (self.walker.sensitivity != walker::SENSITIVITY).then_some(self.walker.sensitivity);
+        config.panel = self.shown.panel;
+        config.recent.clone_from(self.scenes.recent());
+        if let Some(errand) = self.keeper.save() {
+            self.errands.run(errand);
+        }
+    }
+
+    /// Keeps the picture on display as a file, or what it is about to become.
+    fn take_screenshot(&mut self, now: Instant) {
+        let film = self.fresh.as_ref().map(|frame| &frame.film).or_else(|| self.presenter.frame());
+        let shot = film.zip(self.traced.as_ref()).map(|(film, (job, samples))| Shot::new(film, job, *samples));
+        match shot.map(|shot| self.camerawork.ask(shot)) {
+            None => self.notices.warn(now, "no picture yet"),
+            Some(None) => self.notices.tell(now, "screenshot as soon as the picture has all its samples"),
+            Some(Some(shot)) => self.write(shot),
+        }
+    }
+
+    fn write(&self, shot: Shot) {
+        let place = Place { file: self.scenes.file().map(Path::to_owned), cameras: self.scene.cameras.clone() };
+        self.errands.run(screenshot::errand(shot, place, self.screenshots.clone()));
+    }
+
+    /// Tells what came of errands.
+    pub fn tell_news(&mut self, now: Instant) {
+        for news in self.errands.news().collect::<Vec<_>>() {
+            match news {
+                errands::News::Done(text) => self.notices.tell(now, text),
+                errands::News::Problem(text) => self.notices.warn(now, text),
+            }
+            self.repaint(now);
+        }
     }
 
     /// Passes an event to whom it concerns; true to close the window.
@@ -186,7 +280,7 @@ impl Session {
             WindowEvent::CursorMoved { position, .. } => {
                 self.pointer = DVec2::new(position.x, position.y);
                 let turn = self.capture.pointer_moved(&WindowHost(&self.window), self.pointer);
-                self.walker.look(turn);
+                self.look(turn);
             }
             WindowEvent::MouseInput { state, button: MouseButton::Left, .. } if self.on_button(*state) => {
                 return Ok(false);
@@ -211,8 +305,10 @@ impl Session {
             }
             WindowEvent::Resized(size) => {
                 self.gpu.resize(*size);
+                self.keeper.touch(now);
                 self.repaint(now);
             }
+            WindowEvent::Moved(position) => self.keeper.window_moved(now, (position.x, position.y)),
             WindowEvent::Occluded(occluded) => self.occluded = *occluded,
             WindowEvent::DroppedFile(path) => self.scenes.drop_in(path.clone()),
             WindowEvent::HoveredFile(_) | WindowEvent::HoveredFileCancelled => {
@@ -234,7 +330,14 @@ impl Session {
     /// The mouse moved, in its own counts; concerns us while the pointer is locked.
     pub fn on_device_motion(&mut self, delta: DVec2) {
         let turn = self.capture.device_moved(delta);
-        self.walker.look(turn);
+        self.look(turn);
+    }
+
+    fn look(&mut self, counts: DVec2) {
+        if counts != DVec2::ZERO {
+            self.journey.stop_replay();
+            self.walker.look(counts);
+        }
     }
 
     /// True to close the window.
@@ -250,7 +353,12 @@ impl Session {
             }
             // A press made up at a change of focus is none.
             ElementState::Pressed if is_synthetic => None,
-            ElementState::Pressed => self.keys.press(key.physical_key, key.repeat),
+            ElementState::Pressed => {
+                if self.labels.learn(key.physical_key, &key.key_without_modifiers()) {
+                    self.repaint(now);
+                }
+                self.keys.press(key.physical_key, key.repeat)
+            }
         };
         if command == Some(Command::Quit) {
             return true;
@@ -264,20 +372,114 @@ impl Session {
         }
         match command {
             Some(Command::ReleasePointer) if self.capture.is_active() => {
+                self.journey.stop_replay();
                 self.capture.release(&WindowHost(&self.window));
             }
+            Some(Command::ReleasePointer) if self.journey.stop_replay() => {}
+            Some(Command::ReleasePointer) if self.shown.help => self.shown.help = false,
             Some(Command::ReleasePointer) => self.wish(Wish::Cancel),
+            Some(Command::ToggleHelp) => {
+                // It is read with a free pointer.
+                self.capture.release(&WindowHost(&self.window));
+                self.shown = self.shown.with_help_toggled();
+            }
             Some(Command::Open) => self.wish(Wish::Open),
             Some(Command::Reload) => self.wish(Wish::Reload),
             Some(Command::Inspect) => self.inspect(),
             Some(Command::TogglePanel) => self.shown = self.shown.with_panel_toggled(),
             Some(Command::ToggleOverlay) => self.shown.overlay = !self.shown.overlay,
-            Some(Command::Home) => self.walker.go_home(),
+            Some(Command::Home) => {
+                self.journey.stop_replay();
+                self.walker.go_home();
+            }
             Some(Command::ToggleWalking) => self.toggle_walking(now),
+            Some(Command::Screenshot) => self.take_screenshot(now),
+            Some(Command::ToggleFullscreen) => desktop::toggle_fullscreen(&self.window),
+            Some(Command::EnlargeUi) => self.scale_ui(self.ui_scale * UI_STEP),
+            Some(Command::ReduceUi) => self.scale_ui(self.ui_scale / UI_STEP),
+            Some(Command::ResetUi) => self.scale_ui(1.0),
+            Some(Command::StoreBookmark(number)) => {
+                self.keeper.config.bookmarks.of_mut(self.scenes.file()).store(number, self.walker.camera());
+                self.notices.tell(now, format!("Bookmark {number} set: key {number} comes back here"));
+            }
+            Some(Command::GoToBookmark(number)) => {
+                match self.keeper.config.bookmarks.of(self.scenes.file()).get(number) {
+                    Some(camera) => self.go_to(camera),
+                    None => self.notices.warn(now, format!("There is no bookmark {number}: Ctrl+{number} sets it")),
+                }
+            }
+            Some(Command::CopyCamera) => {
+                self.layer.copy(self.walker.camera().to_json());
+                self.notices.tell(now, "Camera copied as JSON");
+            }
+            Some(Command::PasteCamera) => self.paste(now),
+            Some(Command::ToggleRecording) => self.toggle_recording(now),
+            Some(Command::ToggleReplay) => self.toggle_replay(now),
+            Some(Command::NextMap) => self.change_methods(&methods::Change::Map(self.methods.map.next())),
+            Some(Command::ToggleSplit) => self.change_methods(&methods::Change::Split(!self.methods.split.is_on)),
             Some(Command::Quit) | None => return false,
         }
+        self.keeper.touch(now);
         self.repaint(now);
         false
+    }
+
+    fn go_to(&mut self, camera: Camera) {
+        self.journey.stop_replay();
+        self.walker.go_to(camera);
+    }
+
+    /// Goes to the camera on the clipboard.
+    fn paste(&mut self, now: Instant) {
+        let text = self.layer.pasted().filter(|text| !text.trim().is_empty());
+        match text.as_deref().map(|text| scene::read_camera("clipboard", text)) {
+            None => self.notices.warn(now, "There is no text on the clipboard to paste a camera from"),
+            Some(Err(error)) => self.notices.warn(now, format!("What was pasted is no camera: {error}")),
+            Some(Ok(camera)) => {
+                self.go_to(camera);
+                self.notices.tell(now, "Camera pasted");
+            }
+        }
+    }
+
+    fn toggle_recording(&mut self, now: Instant) {
+        let camera = self.walker.camera();
+        if self.journey.is_recording() {
+            self.journey.finish(now, camera, PathBuf::new(), self.walker.surroundings());
+        } else {
+            self.journey.record(now, camera);
+            self.notices.tell(now, self.labels.of("Recording where you go: R stops"));
+        }
+    }
+
+    fn toggle_replay(&mut self, now: Instant) {
+        if self.journey.is_recording() {
+            self.notices.warn(now, self.labels.of("Still recording: R stops"));
+        } else if !self.journey.stop_replay() && !self.journey.replay(now) {
+            self.notices.warn(now, self.labels.of("Nothing is recorded yet: R starts"));
+        }
+    }
+
+    /// Follows a recording and a replay; says when to be called again.
+    fn travel(&mut self, now: Instant) -> Option<Instant> {
+        let base = self.walker.camera();
+        if let Some(camera) = self.journey.camera(now, &base) {
+            self.walker.go_to(camera);
+        }
+        if self.journey.see(now, self.walker.camera()) {
+            self.toggle_recording(now);
+        }
+        if let Some(written) = self.journey.written() {
+            match written {
+                Ok(file) => {
+                    let told = format!("Path written to {}: P replays it", file.display());
+                    self.notices.tell(now, self.labels.of(&told));
+                }
+                Err(reason) => self.notices.warn(now, reason),
+            }
+            self.repaint(now);
+        }
+        self.journey.next(now, STEP)
     }
 
     /// Fly or walk. The speed that held keys had so far was that of the other.
@@ -285,9 +487,9 @@ impl Session {
         if !self.walker.toggle_walking(&self.scene.geometry) {
             self.notices.warn(now, NO_ROOM);
         } else if self.walker.is_walking() {
-            self.notices.tell(now, "Walking: Space jumps, G flies");
+            self.notices.tell(now, self.labels.of("Walking: Space jumps, G flies"));
         } else {
-            self.notices.tell(now, "Flying: G walks");
+            self.notices.tell(now, self.labels.of("Flying: G walks"));
         }
         self.step(now);
     }
@@ -313,8 +515,20 @@ impl Session {
             self.survey = Some(survey);
             self.figures.demand(Instant::now(), self.rates.figures);
         }
+        if let Some(exam) = self.tracer.take_exam() {
+            self.methods.exam = Some(exam);
+            self.figures.demand(Instant::now(), self.rates.figures);
+        }
         let Some(frame) = self.tracer.take() else { return };
         let now = Instant::now();
+        // The same view with fewer samples is a step back: it is on its way to more.
+        let is_less = self.traced.as_ref().is_some_and(|(job, samples)| *job == frame.job && *samples > frame.samples);
+        if is_less || !self.methods.shows(&frame) {
+            return frame.into_films().for_each(|film| self.tracer.recycle(film));
+        }
+        if let Some(shot) = self.camerawork.frame(&frame.film, &frame.job, frame.samples) {
+            self.write(shot);
+        }
         if frame.samples.is_none() {
             self.history.record(frame.finished, frame.stats.frame_ms);
             if let Some(fps) = self.settings.target_fps {
@@ -324,9 +538,12 @@ impl Session {
             self.stats = frame.stats.clone();
             self.stats.stages_ms.present = present;
         }
-        self.traced = Some((frame.job.clone(), frame.samples));
+        let before = self.traced.replace((frame.job.clone(), frame.samples));
+        if frame.job.aspect.is_exact {
+            self.methods.leave(before);
+        }
         if let Some(missed) = self.fresh.replace(frame) {
-            self.tracer.recycle(missed.film);
+            missed.into_films().for_each(|film| self.tracer.recycle(film));
         }
         self.picture.demand(now, self.rates.display);
         if self.shown.overlay {
@@ -354,7 +571,7 @@ impl Session {
     fn enter(&mut self, Arrival { scene, camera, size, .. }: Arrival) {
         self.walker.enter(&scene, camera);
         self.lighting = Lighting::of(&scene);
-        if let Some((width, height)) = size {
+        if let Some((width, height)) = size.filter(|_| !self.is_placed) {
             // The window stays as it is where the system does not let it be resized.
             let _ = self.window.request_inner_size(PhysicalSize::new(width, height));
         }
@@ -379,6 +596,7 @@ impl Session {
         self.window.set_title(&title(&scene));
         self.inspection = None;
         self.lit = self.lighting.lit(&scene);
+        self.walker.lose_footing();
         self.scene = scene;
     }
 
@@ -401,10 +619,14 @@ impl Session {
         if self.scenes.open_dropped() {
             self.repaint(now);
         }
+        if self.keeper.due().is_some_and(|due| due <= now) {
+            self.save_config();
+        }
+        let travel = self.travel(now);
         let rest = self.post(now);
         let mut next = self.tracer.drop_outdated();
         let mut call_at = |at: Instant| next = Some(next.map_or(at, |next: Instant| next.min(at)));
-        rest.into_iter().for_each(&mut call_at);
+        rest.into_iter().chain(travel).chain(self.keeper.due()).for_each(&mut call_at);
         if self.stepped.is_some() {
             call_at(now + STEP);
         }
@@ -426,6 +648,9 @@ impl Session {
     /// Walks up to `now`, as far as keys were held until here.
     fn step(&mut self, now: Instant) {
         let motion = self.keys.motion();
+        if motion.is_moving() {
+            self.journey.stop_replay();
+        }
         let passed = self.stepped.map_or(Duration::ZERO, |before| now.saturating_duration_since(before));
         if !self.walker.advance(&self.scene.geometry, motion, passed.as_secs_f64()) {
             self.notices.warn(now, NO_ROOM);
@@ -441,17 +666,20 @@ impl Session {
         if width == 0 || height == 0 {
             return None;
         }
+        self.hold_exact(now);
         let camera = self.walker.camera();
         if self.stands.0 != camera {
             self.stands = (camera, Some(now));
         }
         let stops =
             self.stands.1.map(|since| since + REST).filter(|&at| at > now && self.settings.target_fps.is_some());
-        let lowering = self.steering.lowering(stops.is_some());
-        let settings = lowered(&self.settings, lowering);
+        // What is exact gives nothing up.
+        let is_exact = self.methods.wants_exact;
+        let lowering = if is_exact { Lowering::NONE } else { self.steering.lowering(stops.is_some()) };
+        let (settings, aspect) = self.methods.ask(&lowered(&self.settings, lowering));
         let (width, height) = (lowering.scaled(width), lowering.scaled(height));
         let scene = Arc::clone(&self.lit);
-        let job = Job { scene, camera, settings, width, height, lowering };
+        let job = Job { scene, camera, settings, width, height, lowering, aspect };
         if self.posted.as_ref() != Some(&job) {
             self.posted = Some(job.clone());
             self.tracer.post(job);
@@ -462,6 +690,8 @@ impl Session {
     /// What the picture is.
     fn showing(&self) -> Showing {
         match &self.traced {
+            Some((job, samples)) if job.aspect.is_exact => Showing::Exact(*samples),
+            _ if self.methods.wants_exact => Showing::ExactSoon,
             Some((_, Some(samples))) => Showing::Refined(*samples),
             Some((Job { lowering, .. }, None)) if lowering.level > 0 => {
                 Showing::Moving { preset: lowering.preset, scale: lowering.scale }
@@ -477,11 +707,7 @@ impl Session {
 
     fn draw(&mut self, now: Instant) -> Result<(), AppError> {
         self.redraw_requested = false;
-        if let Some(TracedFrame { film, .. }) = self.fresh.take()
-            && let Some(shown) = self.presenter.set_frame(&self.gpu, film)
-        {
-            self.tracer.recycle(shown);
-        }
+        self.show_frame();
         if self.figures.is_due(now) {
             self.paint_overlay(now);
         }
@@ -500,9 +726,11 @@ impl Session {
     fn paint_overlay(&mut self, now: Instant) {
         let resting = self.history.is_resting(now) && !self.tracer.is_busy();
         self.notices.expire(now);
+        let camera = self.walker.camera();
+        self.methods.is_elsewhere = self.methods.exam.as_ref().is_some_and(|exam| exam.camera != camera);
         let view = View {
             scene: &self.scene,
-            settings: &self.settings,
+            settings: self.methods.edited(&self.settings),
             stats: &self.stats,
             history: &self.history,
             resting,
@@ -514,11 +742,14 @@ impl Session {
             fov: self.walker.fov(),
             sensitivity: self.walker.sensitivity,
             invert_look: self.walker.invert_look,
+            ui_scale: self.ui_scale,
+            methods: &self.methods,
+            left: &self.settings,
             tuning: Tuning {
                 bound: self.bound,
                 survey: self.survey.as_ref(),
                 drawn: self.traced.as_ref().map_or(&self.settings, |(job, _)| &job.settings),
-                is_elsewhere: self.survey.as_ref().is_some_and(|survey| survey.camera != self.walker.camera()),
+                is_elsewhere: self.survey.as_ref().is_some_and(|survey| survey.camera != camera),
             },
             scenes: self.scenes.report(now),
             lights: self.lighting.dials(),
@@ -526,6 +757,12 @@ impl Session {
             stands: self.traced.as_ref().map(|(job, _)| job.camera).filter(|camera| *camera == self.walker.camera()),
             crosshair: self.capture.is_active(),
             notices: self.notices.current(),
+            labels: &self.labels,
+            activity: match (self.journey.is_recording(), self.journey.is_replaying()) {
+                (true, _) => Some("recording"),
+                (_, true) => Some("replaying"),
+                _ => None,
+            },
         };
         let mut changes = Vec::new();
         let shown = self.shown;
@@ -551,12 +788,14 @@ impl Session {
         }
         if !changes.is_empty() {
             changes.into_iter().for_each(|change| self.apply(change));
+            self.keeper.touch(now);
             self.repaint(now);
         }
     }
 
     fn apply(&mut self, change: Change) {
         match change {
+            Change::Settings(settings) if self.methods.edits_right() => self.methods.split.right = settings,
             Change::Settings(settings) => {
                 let shown_otherwise = settings.present != self.settings.present;
                 self.steering = Steering::new(presets_below(&settings));
@@ -566,11 +805,14 @@ impl Session {
                 }
             }
             Change::Camera(index) => {
-                if let Some(named) = self.scene.cameras.get(index) {
-                    self.walker.go_to(named.camera);
+                if let Some(camera) = self.scene.cameras.get(index).map(|named| named.camera) {
+                    self.go_to(camera);
                 }
             }
-            Change::Home => self.walker.go_home(),
+            Change::Home => {
+                self.journey.stop_replay();
+                self.walker.go_home();
+            }
             Change::Speed(speed) => self.walker.set_speed(speed),
             Change::Walking(_) => self.toggle_walking(Instant::now()),
             Change::EyeHeight(height) => {
@@ -589,6 +831,8 @@ impl Session {
                     survey.end.get_or_insert(End::Stopped);
                 }
             }
+            Change::UiScale(scale) => self.scale_ui(scale),
+            Change::Methods(change) => self.change_methods(&change),
             Change::TogglePanel => self.shown = self.shown.with_panel_toggled(),
             Change::Scenes(wish) => self.wish(wish),
             Change::Light(light, dial) => {
@@ -600,6 +844,73 @@ impl Session {
                 self.lit = self.lighting.lit(&self.scene);
             }
             Change::CloseInspection => self.inspection = None,
+            Change::ToggleHelp => self.shown = self.shown.with_help_toggled(),
+        }
+    }
+
+    /// Panel and text `scale` times as large as usual.
+    fn scale_ui(&mut self, scale: f32) {
+        // In steps of a twentieth, so that as many steps back lead back.
+        self.ui_scale = ((20.0 * scale).round() / 20.0).clamp(*UI_SCALES.start(), *UI_SCALES.end());
+        self.layer.set_scale(self.ui_scale);
+    }
+
+    /// Hands the newest frame to the presenter, or the films of two sides joined anew.
+    fn show_frame(&mut self) {
+        let Self { methods, presenter, gpu, tracer, .. } = self;
+        let mut present = |film| presenter.set_frame(gpu, film);
+        let mut recycle = |film| tracer.recycle(film);
+        if let Some(frame) = self.fresh.take() {
+            methods.display(frame, &mut present, &mut recycle);
+        } else if methods.split.is_outdated() && !methods.wants_exact {
+            methods.split.present(&mut present, &mut recycle);
+        }
+    }
+
+    /// Notes whether the key for the exact picture is down; once it is up, goes back to what was there before.
+    fn hold_exact(&mut self, now: Instant) {
+        let wants = self.keys.is_held(Hold::Exact);
+        if self.methods.wants_exact == wants {
+            return;
+        }
+        self.methods.wants_exact = wants;
+        self.repaint(now);
+        if wants {
+            return;
+        }
+        if let Some(late) = self.fresh.take_if(|frame| frame.job.aspect.is_exact) {
+            late.into_films().for_each(|film| self.tracer.recycle(film));
+        }
+        let (film, what) = self.methods.go_back(&self.walker.camera());
+        if let Some(exact) = film.and_then(|film| self.presenter.set_frame(&self.gpu, film)) {
+            self.tracer.recycle(exact);
+        }
+        self.traced = what.or(self.traced.take());
+        self.picture.demand(now, self.rates.display);
+    }
+
+    fn change_methods(&mut self, change: &methods::Change) {
+        self.methods.apply(change, &self.settings);
+        match change {
+            methods::Change::MeasureErrors => self.examine(Subject::Errors),
+            methods::Change::MeasureCosts => self.examine(Subject::Costs),
+            methods::Change::Stop => self.tracer.stop_search(),
+            _ => self.picture.demand(Instant::now(), self.rates.display),
+        }
+    }
+
+    /// Starts an exam of the settings on what is seen from here.
+    fn examine(&mut self, subject: Subject) {
+        let size = picture_size(self.gpu.size());
+        if size.0 == 0 || size.1 == 0 {
+            return;
+        }
+        let settings = self.methods.edited(&self.settings).clone();
+        let exam = Exam::new(subject, self.walker.camera(), settings, size).with_answers_of(self.methods.exam.as_ref());
+        self.methods.exam = Some(exam.clone());
+        self.tracer.examine(Arc::clone(&self.lit), exam);
+        if let Some(survey) = &mut self.survey {
+            survey.end.get_or_insert(End::Stopped);
         }
     }
 
@@ -623,6 +934,7 @@ impl Session {
         let survey = Survey::new(camera, bound);
         self.survey = Some(survey.clone());
         self.tracer.search(Arc::clone(&self.lit), task, survey);
+        self.methods.end_exam();
     }
 
     /// Starts over on a new device, unless the old one did not even last.
@@ -639,8 +951,8 @@ impl Session {
     /// Starts showing frames in another way, or on another device.
     fn replace_presenter(&mut self, now: Instant) {
         self.presenter = Presenter::new(&self.gpu, self.settings.present);
-        self.layer = Layer::new(&self.gpu, &self.window);
-        self.posted = None;
+        self.layer = Layer::new(&self.gpu, &self.window, self.ui_scale);
+        (self.posted, self.traced) = (None, None);
         self.repaint(now);
     }
 }

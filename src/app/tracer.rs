@@ -4,12 +4,16 @@
 //! wait in a box of one, and their films travel back to be used again. Without a new job the last view is refined, and
 //! then the thread sleeps.
 
-use super::at_rest::{self, AtRest};
+use super::at_rest;
+use super::exam::Exam;
 use super::lowering::Lowering;
-use super::measuring::{Measuring, Search};
+use super::maps::Legend;
+use super::measuring::{Inquiry, Measuring, Search};
+use super::methods::Aspect;
 use super::survey::Survey;
+use super::views::Views;
 use crate::measure::tune;
-use crate::render::{CancelToken, Film, FrameStats, Planes, Scratch, render_frame};
+use crate::render::{CancelToken, Film, FrameStats, Scratch, render_frame};
 use crate::scene::{Camera, Scene};
 use crate::settings::Settings;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -35,14 +39,28 @@ pub struct Job {
     pub height: u32,
     /// What of it was given up for speed.
     pub lowering: Lowering,
+    /// What of the view is to be shown.
+    pub aspect: Aspect,
 }
 
 impl Job {
+    /// The same view by other settings, and nothing but its picture.
+    pub fn with_settings(&self, settings: Settings) -> Self {
+        Self { settings, aspect: Aspect::default(), ..self.clone() }
+    }
+
+    /// Whether a film has the size and the planes of its picture.
+    fn fits(&self, film: &Film) -> bool {
+        (film.width(), film.height(), film.planes()) == (self.width, self.height, self.aspect.map.planes())
+    }
+
     /// Whether a frame of `other` shows this one from elsewhere: worth finishing while the walker moves.
     fn differs_by_camera_only(&self, other: &Self) -> bool {
+        let what = |job: &Self| (job.width, job.height, job.aspect.map, job.aspect.is_exact);
         self.scene == other.scene
             && self.settings == other.settings
-            && (self.width, self.height) == (other.width, other.height)
+            && what(self) == what(other)
+            && self.aspect.beside == other.aspect.beside
     }
 
     /// How long a frame of `running` may go on while this one waits; `None` for to its end.
@@ -71,6 +89,17 @@ pub struct TracedFrame {
     pub job: Job,
     /// Samples a pixel, where it was refined at rest.
     pub samples: Option<u32>,
+    /// The same view by the settings beside, and how many milliseconds it took.
+    pub beside: Option<(Film, f64)>,
+    /// What its colours mean, where it is a map.
+    pub legend: Option<Legend>,
+}
+
+impl TracedFrame {
+    /// Its films.
+    pub fn into_films(self) -> impl Iterator<Item = Film> {
+        std::iter::once(self.film).chain(self.beside.map(|(film, _)| film))
+    }
 }
 
 /// Renders a job into a film.
@@ -114,16 +143,16 @@ impl Exchange {
         Some(job)
     }
 
-    /// A film for the picture of `job`, if one is left over; those of another size are dropped.
+    /// A film for the picture of `job`, if one is left over; those of another size, or with other planes, are dropped.
     fn spare_film(&mut self, job: &Job) -> Option<Film> {
-        self.spare.retain(|film| (film.width(), film.height()) == (job.width, job.height));
+        self.spare.retain(|film| job.fits(film));
         self.spare.pop()
     }
 
     /// Puts a frame into the box, in place of one that was not taken.
     fn put(&mut self, frame: TracedFrame) {
         let missed = self.done.replace(frame);
-        self.spare.extend(missed.map(|frame| frame.film));
+        self.spare.extend(missed.into_iter().flat_map(TracedFrame::into_films));
     }
 }
 
@@ -189,8 +218,17 @@ impl Tracer {
 
     /// Starts a search in `scene` between the frames, in place of one that is under way; tells of it in `survey`.
     pub fn search(&self, scene: Arc<Scene>, task: tune::Task, survey: Survey) {
+        self.inquire(scene, Inquiry::Search(Box::new((task, survey))));
+    }
+
+    /// Starts an exam in `scene` between the frames, in place of what is measured.
+    pub fn examine(&self, scene: Arc<Scene>, exam: Exam) {
+        self.inquire(scene, Inquiry::Exam(Box::new(exam)));
+    }
+
+    fn inquire(&self, scene: Arc<Scene>, inquiry: Inquiry) {
         let mut exchange = self.shared.lock();
-        exchange.search.asked = Some((scene, task, survey));
+        exchange.search.asked = Some((scene, inquiry));
         if exchange.refining || exchange.search.in_frame {
             self.cancel.cancel();
         }
@@ -198,7 +236,7 @@ impl Tracer {
         self.shared.wake.notify_one();
     }
 
-    /// Ends the search that is under way, or was asked for.
+    /// Ends the search or exam that is under way, or was asked for.
     pub fn stop_search(&self) {
         let mut exchange = self.shared.lock();
         (exchange.search.stop, exchange.search.asked) = (true, None);
@@ -210,6 +248,11 @@ impl Tracer {
     /// The newest news of a search, once.
     pub fn take_survey(&self) -> Option<Survey> {
         self.shared.lock().search.survey.take()
+    }
+
+    /// The newest news of an exam, once.
+    pub fn take_exam(&self) -> Option<Exam> {
+        self.shared.lock().search.exam.take()
     }
 
     /// Drops the running frame if newer settings have waited for long enough; else says when to ask again, if ever.
@@ -266,13 +309,14 @@ impl<F: Fn(Word)> Drop for Parting<'_, F> {
 }
 
 /// What the thread does next.
+#[allow(clippy::large_enum_variant, reason = "there is one at a time, and a box would be an allocation a frame")]
 enum Task {
     /// A frame.
     Frame(Job),
     /// One more sample a pixel of the last view.
     Pass,
-    /// A search for cheap settings.
-    Search(Box<(Arc<Scene>, tune::Task, Survey)>),
+    /// What is measured.
+    Inquiry(Arc<Scene>, Inquiry),
 }
 
 pub(super) struct Worker {
@@ -284,17 +328,16 @@ pub(super) struct Worker {
 impl Worker {
     fn run(&self, render: Render<'_>, word: &dyn Fn(Word)) {
         let mut next_start = Instant::now();
-        let mut at_rest = AtRest::default();
-        while let Some(task) = self.begin(next_start, at_rest.due()) {
+        let mut views = Views::default();
+        while let Some(task) = self.begin(next_start, views.at_rest.due()) {
             let has_frame = match task {
                 Task::Frame(job) => {
                     next_start = Instant::now() + self.interval;
-                    self.trace(job, render, &mut at_rest)
+                    self.trace(job, render, &mut views)
                 }
-                Task::Pass => self.refine(render, &mut at_rest),
-                Task::Search(search) => {
-                    let (scene, task, survey) = *search;
-                    Measuring::new(self, render, &mut at_rest, word, scene, survey).run(&task);
+                Task::Pass => self.refine(render, &mut views),
+                Task::Inquiry(scene, inquiry) => {
+                    Measuring::new(self, render, &mut views, word, scene).run(inquiry);
                     false
                 }
             };
@@ -312,10 +355,10 @@ impl Worker {
                 return None;
             }
             if exchange.job.is_none()
-                && let Some(search) = exchange.search.asked.take()
+                && let Some((scene, inquiry)) = exchange.search.asked.take()
             {
                 exchange.search.stop = false;
-                return Some(Task::Search(Box::new(search)));
+                return Some(Task::Inquiry(scene, inquiry));
             }
             let due = if exchange.job.is_some() { Some(not_before) } else { pass_due };
             let wait = due.map(|due| due.saturating_duration_since(Instant::now()));
@@ -333,23 +376,27 @@ impl Worker {
     }
 
     /// Traces a frame and puts it into the box; false for one that was dropped on the way.
-    pub fn trace(&self, job: Job, render: Render<'_>, at_rest: &mut AtRest) -> bool {
+    pub fn trace(&self, job: Job, render: Render<'_>, views: &mut Views) -> bool {
         let mut film = self.film_for(&job);
         let stats = render(&job, &mut film);
+        let completed = stats.completed;
+        let mut frame =
+            TracedFrame { film, stats, finished: Instant::now(), job, samples: None, beside: None, legend: None };
+        let completed = completed && views.complete(&mut frame, &|job| self.film_for(job), render);
         let mut exchange = self.shared.lock();
         exchange.running = None;
-        if !stats.completed {
-            exchange.spare.push(film);
+        if !completed {
+            exchange.spare.extend(frame.into_films());
             return false;
         }
-        at_rest.begin(job.clone(), Instant::now());
-        exchange.put(TracedFrame { film, stats, finished: Instant::now(), job, samples: None });
+        views.at_rest.begin(frame.job.clone(), Instant::now());
+        exchange.put(frame);
         true
     }
 
     /// Traces one sample more of each pixel, and puts the picture into the box where that made it better.
-    fn refine(&self, render: Render<'_>, at_rest: &mut AtRest) -> bool {
-        let pass = at_rest.pass(render);
+    fn refine(&self, render: Render<'_>, views: &mut Views) -> bool {
+        let pass = views.at_rest.pass(render);
         let mut exchange = self.shared.lock();
         exchange.refining = false;
         let is_left = exchange.job.is_some();
@@ -361,15 +408,16 @@ impl Worker {
         }
         let mut film = self.film_for(job);
         film.copy_rgba(refined);
-        let frame = TracedFrame { film, stats, finished: Instant::now(), job: job.clone(), samples };
+        let (finished, job) = (Instant::now(), job.clone());
+        let frame = TracedFrame { film, stats, finished, job, samples, beside: None, legend: None };
         self.shared.lock().put(frame);
         true
     }
 
     /// A film for the picture of `job`. Made without the lock: the event loop does not wait for memory.
-    fn film_for(&self, job: &Job) -> Film {
+    pub fn film_for(&self, job: &Job) -> Film {
         let spare = self.shared.lock().spare_film(job);
-        spare.unwrap_or_else(|| Film::new(job.width, job.height, Planes::default()))
+        spare.unwrap_or_else(|| Film::new(job.width, job.height, job.aspect.map.planes()))
     }
 }
 
@@ -377,6 +425,7 @@ impl Worker {
 mod tests {
     use super::*;
     use crate::app::survey::End;
+    use crate::render::Planes;
     use crate::scene::{LoadOptions, builtin, load_text};
     use crate::settings::Supersample;
     use std::sync::LazyLock;
@@ -394,8 +443,15 @@ mod tests {
     fn job(width: u32, x: f32) -> Job {
         let mut camera = Camera::default();
         camera.eye.x = x;
-        let settings = Settings::default();
-        Job { scene: nowhere(), camera, settings, width, height: 4, lowering: Lowering::NONE }
+        Job {
+            scene: nowhere(),
+            camera,
+            settings: Settings::default(),
+            width,
+            height: 4,
+            lowering: Lowering::NONE,
+            aspect: Aspect::default(),
+        }
     }
 
     fn start(
@@ -514,6 +570,7 @@ mod tests {
                 width,
                 height,
                 lowering: Lowering::NONE,
+                aspect: Aspect::default(),
             });
             let frames = frames(&tracer, &words);
             let picture = |supersample: Supersample| {

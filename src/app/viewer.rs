@@ -19,6 +19,8 @@ pub enum Call {
     Traced(Word),
     /// There may be news of scenes.
     Scenes,
+    /// There is news of an errand.
+    Errand,
 }
 
 /// See [`run`](super::run).
@@ -86,6 +88,11 @@ impl ApplicationHandler<Call> for Viewer {
                 }
             }
             Call::Traced(Word::Gone) => self.close(event_loop, Some(AppError::TracerGone)),
+            Call::Errand => {
+                if let Some(session) = &mut self.session {
+                    session.tell_news(Instant::now());
+                }
+            }
             Call::Scenes => {
                 if let Some(Err(error)) = self.session.as_mut().map(Session::on_news) {
                     self.close(event_loop, Some(error));

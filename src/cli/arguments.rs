@@ -3,13 +3,15 @@
 
 use super::values;
 use clap::{Arg, ArgAction, Command, crate_version, value_parser};
+use raywalk::app::maps::Map;
+use raywalk::app::screenshot;
 use raywalk::math::simd;
 use raywalk::measure::metric::METRICS;
 use raywalk::measure::tune::Bound;
 use raywalk::picture::FORMATS;
 use raywalk::scene::Limits;
 use raywalk::settings::{Kind, PRESETS, ROWS, Row, Settings};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The whole command line.
 pub fn command() -> Command {
@@ -18,19 +20,29 @@ pub fn command() -> Command {
         .version(crate_version!())
         .about(about)
         .after_help(
-            "Without a command: opens a window on SCENE, or on the built-in scene. With no display, renders one frame \
-             to raywalk.png in the current folder.\n\nExit codes: 0 done, 1 the input or the run failed, 2 wrong \
-             usage, 130 after Ctrl-C.",
+            "Without a command: opens a window on SCENE, or on the built-in scene. With no display, walks in the \
+             terminal; without a terminal, renders one frame to raywalk.png in the current folder.\n\nExit codes: 0 \
+             done, 1 the input or the run failed, 2 wrong usage, 130 after Ctrl-C.",
         )
         .args_conflicts_with_subcommands(true)
         .subcommand_precedence_over_arg(true)
         .max_term_width(120);
-    with_shared(view).subcommands([render(), bench(), tune(), info(), compare()])
+    let view =
+        view.arg(switch("no-config", "Neither use nor change what the last window left (settings, size, place)")).arg(
+            Arg::new("screenshots")
+                .long("screenshots")
+                .value_name("NAME.png")
+                .value_parser(|name: &str| screenshot::name(Path::new(name)))
+                .help("Where F12 puts pictures; %04d stands for their number [default: raywalk-%04d.png]"),
+        );
+    let terminal = switch("terminal", "Walk in the terminal, not in a window: WASD, arrows, Q to quit");
+    with_shared(view.arg(terminal)).subcommands([render(), bench(), tune(), info(), compare()])
 }
 
 fn render() -> Command {
     let formats: Vec<String> =
         FORMATS.iter().map(|format| format!(".{}: {}", format.extensions.join(" ."), format.help)).collect();
+    let maps = Map::ALL.map(|map| format!("{}: {}", map.name(), map.help()));
     let command = Command::new("render")
         .about("Renders one or many frames, without window or GPU")
         .after_help("Starts from the preset exact. Without -o nothing is written: the run is timed (see --stats).")
@@ -54,6 +66,17 @@ fn render() -> Command {
                 .value_parser(["full"])
                 .requires("stats")
                 .help("Trace each frame once more, untimed, with a ray for every pixel; --stats tells the difference"),
+        )
+        .arg(
+            Arg::new("map")
+                .long("map")
+                .value_name("MAP")
+                .value_parser(Map::ALL.map(Map::name))
+                .help("Write what a method does instead of the picture; not as .exr")
+                .long_help(format!(
+                    "Write what a method does instead of the picture; not as .exr\n{}",
+                    maps.join("\n")
+                )),
         );
     with_shared(command)
 }

@@ -4,10 +4,11 @@ use super::Failure;
 use super::values::Size;
 use clap::ArgMatches;
 use glam::Vec3;
+use raywalk::app::maps::Map;
 use raywalk::picture::MAX_PIXELS;
 use raywalk::render::Planes;
 use raywalk::scene::{Limits, Progress};
-use raywalk::settings::{PRESETS, ROWS, Settings, Visibility};
+use raywalk::settings::{PRESETS, Preset, ROWS, Settings, Visibility};
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -47,6 +48,8 @@ pub struct Options {
     pub stats: Option<String>,
     /// How the frames are found that the record compares with.
     pub reference: Option<Visibility>,
+    /// What is written of the frames; of `render` alone.
+    pub map: Map,
     pub settings: Settings,
 }
 
@@ -101,15 +104,25 @@ impl Options {
             stats: asked.get_one("stats").cloned(),
             // Of `render` alone, which has one value for it.
             reference: asked.try_contains_id("reference").is_ok_and(|given| given).then_some(Visibility::Full),
-            settings: settings(asked, preset)?,
+            map: map(asked),
+            settings: with_flags(asked, named_preset(asked).map_or(preset, |preset| preset.settings)())?,
         })
     }
 }
 
-/// The preset, then every flag that was given: a flag beats the preset, whatever their order.
-fn settings(asked: &ArgMatches, preset: fn() -> Settings) -> Result<Settings, Failure> {
-    let named = asked.get_one::<String>("preset").and_then(|name| PRESETS.iter().find(|p| p.name == name));
-    let mut settings = named.map_or(preset, |preset| preset.settings)();
+/// The map asked for, else the picture.
+fn map(asked: &ArgMatches) -> Map {
+    let name = asked.try_get_one::<String>("map").ok().flatten();
+    name.and_then(|name| Map::ALL.into_iter().find(|map| map.name() == name)).unwrap_or_default()
+}
+
+/// The preset that was named.
+pub fn named_preset(asked: &ArgMatches) -> Option<&'static Preset> {
+    asked.get_one::<String>("preset").and_then(|name| PRESETS.iter().find(|preset| preset.name == name))
+}
+
+/// `settings` with every flag that was given: a flag beats the preset, whatever their order.
+pub fn with_flags(asked: &ArgMatches, mut settings: Settings) -> Result<Settings, Failure> {
     for row in ROWS {
         if let Some(text) = asked.get_one::<String>(row.name) {
             (row.set)(&mut settings, text).map_err(|message| Failure::Usage(format!("--{}: {message}", row.name)))?;
@@ -162,7 +175,7 @@ mod tests {
     fn planes_and_limits_add_up() {
         let line = ["raywalk", "render", "--aov", "depth,object", "--aov", "normal", "--limit", "objects=7"];
         let options = options(&line).expect("right");
-        assert_eq!(options.planes, Planes { depth: true, normal: true, object: true, primitive: false });
+        assert_eq!(options.planes, Planes { depth: true, normal: true, object: true, ..Planes::default() });
         assert_eq!(options.reading.limits.objects, 7);
     }
 

@@ -2,53 +2,20 @@
 
 use super::Failure;
 use super::frames::Frames;
-use raywalk::picture::{Format, PendingFile, WriteOptions};
+use raywalk::app::maps::Map;
+use raywalk::picture::{Format, NumberedName, PendingFile, WriteOptions};
 use raywalk::render::{Film, Planes};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The pictures of a run.
 pub struct Output {
-    name: Name,
+    name: NumberedName,
     format: &'static Format,
     options: WriteOptions,
     /// One picture a frame; else only the last is written.
     each: bool,
     /// Made as soon as the run starts: the proof that pictures can be written.
     next: Option<PendingFile>,
-}
-
-/// A file name in which `%04d`, or `%d`, stands for the frame's number.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Name {
-    asked: PathBuf,
-    /// Text before the number, digits, text after it, all of the last component; `None` for a plain name.
-    number: Option<(String, usize, String)>,
-}
-
-impl Name {
-    fn new(asked: &Path) -> Self {
-        let name = asked.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        Self { asked: asked.to_owned(), number: Self::split(name) }
-    }
-
-    fn split(name: &str) -> Option<(String, usize, String)> {
-        name.match_indices('%').find_map(|(start, _)| {
-            let (digits, rest) = name[start + 1..].split_once('d')?;
-            let width = match digits.strip_prefix('0') {
-                _ if digits.is_empty() => 1,
-                Some(width) => width.parse().ok().filter(|width| (1..=20).contains(width))?,
-                None => return None,
-            };
-            Some((name[..start].to_owned(), width, rest.to_owned()))
-        })
-    }
-
-    fn of_frame(&self, frame: u64) -> PathBuf {
-        match &self.number {
-            Some((before, width, after)) => self.asked.with_file_name(format!("{before}{frame:0width$}{after}")),
-            None => self.asked.clone(),
-        }
-    }
 }
 
 /// Refuses planes for a file that cannot hold them; `output` is `None` where nothing is written.
@@ -60,11 +27,21 @@ pub fn check_planes(output: Option<&Path>, planes: Planes) -> Result<(), Failure
     Ok(())
 }
 
+/// Refuses a map for a file that keeps linear colour.
+pub fn check_map(output: Option<&Path>, map: Map) -> Result<(), Failure> {
+    if map != Map::Picture && output.map(Format::of).transpose()?.is_some_and(Format::keeps_planes) {
+        return Err(Failure::Usage(
+            "--map paints 8-bit pictures, such as .png; the planes themselves are --aov".to_owned(),
+        ));
+    }
+    Ok(())
+}
+
 impl Output {
     /// Checks that `path` names a known format, and a picture for each frame where the frames differ.
     pub fn new(path: &Path, options: WriteOptions, frames: &Frames) -> Result<Self, Failure> {
-        let (format, name) = (Format::of(path)?, Name::new(path));
-        if frames.differ() && name.number.is_none() {
+        let (format, name) = (Format::of(path)?, NumberedName::new(path));
+        if frames.differ() && !name.has_number() {
             let message = format!("{}: many frames need a number in the name, such as walk-%04d.png", path.display());
             return Err(Failure::Usage(message));
         }
@@ -74,7 +51,7 @@ impl Output {
     /// Checks that pictures of this size can be written where they are to go.
     pub fn prepare(&mut self, width: u32, height: u32, frames: &Frames) -> Result<(), Failure> {
         let first = if self.each { frames.range.start } else { frames.range.end - 1 };
-        let path = self.name.of_frame(first);
+        let path = self.name.of(first);
         self.format.check_size(&path, width, height)?;
         self.next = Some(PendingFile::create(&path)?);
         Ok(())
@@ -87,7 +64,7 @@ impl Output {
         }
         let file = match self.next.take() {
             Some(file) => file,
-            None => PendingFile::create(&self.name.of_frame(frame))?,
+            None => PendingFile::create(&self.name.of(frame))?,
         };
         Ok(file.commit(|sink| self.format.write_film(film, self.options, sink))?)
     }
@@ -98,18 +75,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_take_the_frame_number() {
-        let name = |asked: &str| Name::new(Path::new(asked)).of_frame(7).display().to_string();
-        assert_eq!(name("walk-%04d.png"), "walk-0007.png");
-        assert_eq!(name("a%d/walk%d.png"), "a%d/walk7.png");
-        assert_eq!(name("100%/%03d.exr"), "100%/007.exr");
-        for plain in ["walk.png", "100%.png", "%4d.png", "%0d.png", "%099d.png"] {
-            assert_eq!(name(plain), plain);
-        }
-        assert_eq!(name("5%_%02d.png"), "5%_07.png");
-    }
-
-    #[test]
     fn planes_need_an_exr() {
         let planes = Planes { depth: true, ..Planes::default() };
         assert!(check_planes(Some(Path::new("a.exr")), planes).is_ok());
@@ -117,5 +82,13 @@ mod tests {
             assert_eq!(check_planes(wrong, planes).expect_err("no plane").exit_code(), Failure::WRONG_USAGE);
             assert!(check_planes(wrong, Planes::default()).is_ok());
         }
+    }
+
+    #[test]
+    fn maps_need_eight_bits() {
+        assert!(check_map(Some(Path::new("a.png")), Map::Cost).is_ok() && check_map(None, Map::Cost).is_ok());
+        assert!(check_map(Some(Path::new("a.exr")), Map::Picture).is_ok());
+        let refused = check_map(Some(Path::new("a.exr")), Map::Cost).expect_err("a map is no light");
+        assert_eq!(refused.exit_code(), Failure::WRONG_USAGE);
     }
 }

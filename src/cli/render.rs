@@ -8,6 +8,7 @@ use super::progress::Progress;
 use super::stage::Stage;
 use super::{Failure, stdout};
 use clap::ArgMatches;
+use raywalk::app::maps::Map;
 use raywalk::math::simd::SimdToken;
 use raywalk::measure::record::Subject;
 use raywalk::measure::run::{WARM_UP_FRAMES, timed_frame};
@@ -23,6 +24,7 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     let write = WriteOptions { binary: asked.get_flag("binary") };
     let output = asked.get_one::<PathBuf>("output").map(PathBuf::as_path);
     output::check_planes(output, options.planes)?;
+    output::check_map(output, options.map)?;
     let frames = Frames::of(&options)?;
     let output = output.map(|path| Output::new(path, write, &frames)).transpose()?;
     let interrupt = Interrupt::listen()?;
@@ -50,7 +52,8 @@ pub fn render(
 
     let mut scratch = Scratch::new();
     scratch.cancel = interrupt.token.clone();
-    let mut tracer = Tracer { stage, frames, interrupt, scratch, film: Film::new(width, height, options.planes) };
+    let planes = if options.map == Map::Picture { options.planes } else { options.map.planes() };
+    let mut tracer = Tracer { stage, frames, interrupt, scratch, film: Film::new(width, height, planes) };
     if record.is_some() {
         let mut untimed = Run::default();
         for _ in 0..WARM_UP_FRAMES {
@@ -59,14 +62,16 @@ pub fn render(
     }
     let mut run = Run::default();
     let mut reference = options.reference.map(|visibility| Reference::new(visibility, stage));
+    let mut exact = options.map.needs_exact().then(|| Reference::new(Visibility::Full, stage));
     let progress = Progress::new(frames.range.end - frames.range.start, options.reading.quiet);
     for number in frames.range.clone() {
-        let film = tracer.trace(number, &mut run)?;
-        if let Some(output) = &mut output {
-            output.write(number, frames, film)?;
-        }
+        tracer.trace(number, &mut run)?;
         if let Some(reference) = &mut reference {
             tracer.compare(number, reference)?;
+        }
+        if let Some(output) = &mut output {
+            tracer.paint(number, options.map, exact.as_mut())?;
+            output.write(number, frames, &tracer.film)?;
         }
         progress.advance();
     }
@@ -89,26 +94,38 @@ struct Tracer<'a> {
 
 impl Tracer<'_> {
     /// Traces frame `number` and adds its cost to `run`.
-    fn trace(&mut self, number: u64, run: &mut Run) -> Result<&Film, Failure> {
+    fn trace(&mut self, number: u64, run: &mut Run) -> Result<(), Failure> {
         let camera = self.frames.camera(number, &self.stage.camera)?;
         let (scene, settings) = (&self.stage.loaded.scene, &self.stage.settings);
         let completed = timed_frame(run, scene, &camera, settings, &mut self.scratch, &mut self.film);
         // Asked again: Ctrl-C may come while the last tile is traced.
         self.interrupt.check()?;
-        if completed { Ok(&self.film) } else { Err(Failure::Interrupted) }
+        if completed { Ok(()) } else { Err(Failure::Interrupted) }
+    }
+
+    /// Paints frame `number`, which was traced last, as a map.
+    fn paint(&mut self, number: u64, map: Map, mut exact: Option<&mut Reference>) -> Result<(), Failure> {
+        if let Some(exact) = &mut exact {
+            self.trace_reference(number, exact)?;
+        }
+        map.paint(&mut [&mut self.film], exact.map(|exact| &exact.film));
+        Ok(())
     }
 
     /// Traces the reference of frame `number`, which was traced last, and measures the difference.
     fn compare(&mut self, number: u64, reference: &mut Reference) -> Result<(), Failure> {
+        self.trace_reference(number, reference)?;
+        reference.meter.add(self.film.rgba(), reference.film.rgba());
+        Ok(())
+    }
+
+    /// Traces the reference of frame `number`.
+    fn trace_reference(&mut self, number: u64, reference: &mut Reference) -> Result<(), Failure> {
         let camera = self.frames.camera(number, &self.stage.camera)?;
-        let Reference { settings, film, meter } = reference;
+        let Reference { settings, film, .. } = reference;
         let stats = render_frame(&self.stage.loaded.scene, &camera, settings, &mut self.scratch, film);
         self.interrupt.check()?;
-        if !stats.completed {
-            return Err(Failure::Interrupted);
-        }
-        meter.add(self.film.rgba(), film.rgba());
-        Ok(())
+        if stats.completed { Ok(()) } else { Err(Failure::Interrupted) }
     }
 }
 

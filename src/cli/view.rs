@@ -1,16 +1,17 @@
-//! `raywalk [SCENE]`: the window, or one picture where there is no display.
+//! `raywalk [SCENE]`: the window; where there is no display a walk in the terminal, or one picture.
 
 use super::frames::Frames;
 use super::interrupt::Interrupt;
-use super::options::Options;
+use super::options::{Options, named_preset, with_flags};
 use super::output::{self, Output};
 use super::stage::{DEFAULT_SIZE, Loaded, Stage};
 use super::values::Size;
 use super::{Failure, render, stdout};
 use clap::ArgMatches;
-use raywalk::app::scenes::{Arrival, Failed, Load, Outcome, RecentFiles};
-use raywalk::app::{self, AppError, AppOptions, Opening};
-use raywalk::picture::WriteOptions;
+use raywalk::app::config::{Config, Store, usual_settings};
+use raywalk::app::scenes::{Arrival, Failed, Load, Outcome};
+use raywalk::app::{self, AppError, AppOptions, Opening, screenshot, terminal};
+use raywalk::picture::{NumberedName, WriteOptions};
 use raywalk::scene::LoadOptions;
 use raywalk::settings::Settings;
 use std::path::Path;
@@ -21,13 +22,17 @@ const PICTURE: &str = "raywalk.png";
 /// A scene that is loaded sooner needs no window to wait in.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// Opens the window, or else renders one frame.
+/// Opens the window, or else walks in the terminal, or else renders one frame.
 pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
-    let mut options = Options::of(asked, Settings::balanced)?;
-    // A preset says nothing of it, and only a window can rest.
-    if asked.value_source("refine-at-rest").is_none() {
-        options.settings.refine_at_rest = true;
+    let in_terminal = asked.get_flag("terminal");
+    if in_terminal && !terminal::is_there() {
+        let what = "standard input and output must be a terminal, and TERM must name it";
+        return Err(Failure::Usage(format!("--terminal: {what}; without one, raywalk render draws a picture")));
     }
+    let mut options = Options::of(asked, Settings::balanced)?;
+    let (config, store) = config(asked, &options);
+    options.settings = settings(asked, &config.start_settings())?;
+    let screenshots = screenshots(asked, &config, options.reading.quiet);
     output::check_planes(Some(Path::new(PICTURE)), options.planes)?;
     let frames = Frames::of(&options)?;
     let interrupt = Interrupt::listen()?;
@@ -49,16 +54,41 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
             limits: options.reading.limits.clone(),
             ..LoadOptions::default()
         },
-        recent: RecentFiles::default(),
         settings: options.settings.clone(),
         size,
+        as_before: options.view.size.is_none(),
+        config,
+        store,
+        screenshots,
     };
-    match app::run(window) {
-        Err(AppError::NoDisplay(reason)) => {
-            let arrival = match opening {
-                Opening::Scene(arrival) => arrival,
-                Opening::Loading(load, _) => arrived(load.wait_to_the_end())?,
-            };
+    // No window wanted, or none to be had.
+    let reason = if in_terminal {
+        None
+    } else {
+        match app::run(window) {
+            Err(AppError::NoDisplay(reason)) => Some(reason),
+            Err(AppError::NoScene(failed)) => return Err(failure(failed)),
+            Err(error) => return Err(error.into()),
+            Ok(end) => {
+                if !options.reading.quiet {
+                    end.warnings.iter().for_each(|warning| stdout::note(&format!("warning: {warning}")));
+                }
+                tell_of_stats(&options);
+                return Ok(());
+            }
+        }
+    };
+    let arrival = match opening {
+        Opening::Scene(arrival) => arrival,
+        Opening::Loading(load, _) => arrived(load.wait_to_the_end())?,
+    };
+    match reason.filter(|_| !terminal::is_there()) {
+        None => {
+            super::terminal::walk(asked, &arrival, settings(asked, &usual_settings())?, &interrupt)?;
+            tell_of_stats(&options);
+            Ok(())
+        }
+        Some(reason) => {
             // A still picture has no hurry: it is what `render` makes of the same words.
             let options = Options::of(asked, Settings::exact)?;
             picture(&stage_of(arrival, &options), &frames.first(), &options, &interrupt)?;
@@ -66,14 +96,19 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
             stdout::note(&format!("no window ({reason}): rendered one frame to {PICTURE}"));
             Ok(())
         }
-        Err(AppError::NoScene(failed)) => Err(failure(failed)),
-        Err(error) => Err(error.into()),
-        Ok(_) => {
-            if options.stats.is_some() && !options.reading.quiet {
-                stdout::note("warning: a walk has no --stats; raywalk render writes them");
-            }
-            Ok(())
-        }
+    }
+}
+
+/// What a walk starts with: the preset named, or else what the user has of old, and every flag.
+fn settings(asked: &ArgMatches, own: &Settings) -> Result<Settings, Failure> {
+    let start = named_preset(asked).map_or_else(|| own.clone(), |preset| (preset.settings)().in_place_of(own));
+    with_flags(asked, start)
+}
+
+/// A walk has no figures of its run.
+fn tell_of_stats(options: &Options) {
+    if options.stats.is_some() && !options.reading.quiet {
+        stdout::note("warning: a walk has no --stats; raywalk render writes them");
     }
 }
 
@@ -111,6 +146,26 @@ fn stage_of(arrival: Arrival, options: &Options) -> Stage {
     let size = Size { width, height };
     let stage = Stage { loaded, camera: arrival.camera, size, settings: Settings::default() };
     stage.with_settings(&options.settings)
+}
+
+/// What the last window left, and where this one's is kept; a file that cannot be read is told of.
+fn config(asked: &ArgMatches, options: &Options) -> (Config, Option<Store>) {
+    let path = Store::usual_path().filter(|_| !asked.get_flag("no-config"));
+    let Some((store, config, warning)) = path.map(Store::open) else { return (Config::default(), None) };
+    if let (Some(warning), false) = (warning, options.reading.quiet) {
+        stdout::note(&format!("warning: {warning}"));
+    }
+    (config, Some(store))
+}
+
+/// Where screenshots go: as typed, else as kept, else the usual name in the current folder.
+fn screenshots(asked: &ArgMatches, config: &Config, quiet: bool) -> NumberedName {
+    let kept = config.screenshots.as_deref().map(|name| screenshot::name(Path::new(name)));
+    if let (Some(Err(message)), false) = (&kept, quiet) {
+        stdout::note(&format!("warning: screenshots in the kept settings: {message}"));
+    }
+    let usual = || NumberedName::new(Path::new(screenshot::USUAL_NAME));
+    asked.get_one::<NumberedName>("screenshots").cloned().or(kept.and_then(Result::ok)).unwrap_or_else(usual)
 }
 
 fn picture(stage: &Stage, frames: &Frames, options: &Options, interrupt: &Interrupt) -> Result<(), Failure> {

@@ -8,6 +8,7 @@
 
 pub mod bench;
 pub mod chart;
+pub mod colormap;
 pub mod counts;
 pub mod difference;
 pub mod front;

@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn channels_are_named_and_typed_as_promised() {
-        let all = Planes { depth: true, normal: true, object: true, primitive: true };
+        let all = Planes { depth: true, normal: true, object: true, primitive: true, ..Planes::default() };
         let meta = MetaData::read_from_buffered(written(all), true).expect("it is an EXR");
         assert_eq!(meta.headers.len(), 1);
         let header = &meta.headers[0];

@@ -31,6 +31,16 @@ impl PendingFile {
         Self::open(path).map_err(PictureError::io(path, "write"))
     }
 
+    /// Starts a file in the folder of `path`, for [`commit_to_free`](Self::commit_to_free).
+    ///
+    /// # Errors
+    /// [`PictureError::Io`] when the folder is missing or not writable.
+    pub fn beside(path: &Path) -> Result<Self, PictureError> {
+        let (temporary, file) = create_beside(path).map_err(PictureError::io(path, "write"))?;
+        let (asked, target) = (path.to_owned(), path.to_owned());
+        Ok(Self { asked, target, temporary: Some(temporary), file: Some(BufWriter::new(file)) })
+    }
+
     fn open(path: &Path) -> io::Result<Self> {
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         if let Ok(metadata) = fs::metadata(&target) {
@@ -71,20 +81,45 @@ impl PendingFile {
         mut self,
         encode: impl FnOnce(&mut dyn Sink) -> Result<(), PictureError>,
     ) -> Result<(), PictureError> {
-        if let Some(mut file) = self.file.take() {
-            encode(&mut file).map_err(|error| match error {
-                PictureError::Encode(message) => {
-                    PictureError::Io { path: self.asked.clone(), action: "write", source: io::Error::other(message) }
-                }
-                other => other,
-            })?;
-            file.flush().map_err(PictureError::io(&self.asked, "write"))?;
-        }
+        self.write(encode)?;
         if let Some(temporary) = &self.temporary {
             fs::rename(temporary, &self.target).map_err(PictureError::io(&self.asked, "write"))?;
             self.temporary = None;
         }
         Ok(())
+    }
+
+    /// Lets `encode` write the contents, then gives the file the first of `names` that no file has, whoever else makes
+    /// some meanwhile. All are to be in the folder of the name that it was made [beside](Self::beside).
+    ///
+    /// # Errors
+    /// As [`commit`](Self::commit); [`PictureError::Io`] also when no name is free.
+    pub fn commit_to_free(
+        mut self,
+        names: impl Iterator<Item = PathBuf>,
+        encode: impl FnOnce(&mut dyn Sink) -> Result<(), PictureError>,
+    ) -> Result<PathBuf, PictureError> {
+        self.write(encode)?;
+        let Some(temporary) = &self.temporary else { return Ok(self.asked.clone()) };
+        for name in names {
+            match claim(temporary, &name) {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                // Dropped after this, the file goes under its temporary name, if it still has that.
+                result => return result.map_err(PictureError::io(&name, "write")).map(|()| name),
+            }
+        }
+        Err(PictureError::io(&self.asked, "write")(io::ErrorKind::AlreadyExists.into()))
+    }
+
+    fn write(&mut self, encode: impl FnOnce(&mut dyn Sink) -> Result<(), PictureError>) -> Result<(), PictureError> {
+        let Some(mut file) = self.file.take() else { return Ok(()) };
+        encode(&mut file).map_err(|error| match error {
+            PictureError::Encode(message) => {
+                PictureError::Io { path: self.asked.clone(), action: "write", source: io::Error::other(message) }
+            }
+            other => other,
+        })?;
+        file.flush().map_err(PictureError::io(&self.asked, "write"))
     }
 }
 
@@ -95,6 +130,18 @@ impl Drop for PendingFile {
             // Nobody is left to hear of a failure, and the final name is untouched.
             let _ = fs::remove_file(temporary);
         }
+    }
+}
+
+/// Gives a complete file a name that no file has.
+fn claim(complete: &Path, name: &Path) -> io::Result<()> {
+    match fs::hard_link(complete, name) {
+        // Some file systems have no links: there the name is taken first, and then what it names is replaced.
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
+            OpenOptions::new().write(true).create_new(true).open(name)?;
+            fs::rename(complete, name)
+        }
+        result => result,
     }
 }
 
@@ -155,6 +202,30 @@ mod tests {
         assert!(message.contains("a.png") && message.contains("disk full"), "{message}");
         assert_eq!(fs::read(&target).expect("there"), b"old");
         assert_eq!(folder.names(), ["a.png"]);
+    }
+
+    #[test]
+    fn many_writers_at_once_never_overwrite_each_other() {
+        let folder = Folder::new();
+        folder.write("2.png", b"of old");
+        let name = |number: u64| folder.0.join(format!("{number}.png"));
+        let names: Vec<PathBuf> = std::thread::scope(|scope| {
+            let write = |text: String| {
+                let pending = PendingFile::beside(&name(1)).expect("writable");
+                pending
+                    .commit_to_free((1..).map(name), |sink| Ok(sink.write_all(text.as_bytes())?))
+                    .expect("some are free")
+            };
+            let writers: Vec<_> = (0..8).map(|i| scope.spawn(move || write(i.to_string()))).collect();
+            writers.into_iter().map(|writer| writer.join().expect("no panic")).collect()
+        });
+        for (i, name) in names.iter().enumerate() {
+            assert_eq!(fs::read_to_string(name).expect("there"), i.to_string());
+        }
+        assert_eq!(fs::read(name(2)).expect("there"), b"of old");
+        assert_eq!(folder.names().len(), 9, "nothing is left over");
+        let full = PendingFile::beside(&name(1)).expect("writable").commit_to_free([name(2)].into_iter(), |_| Ok(()));
+        assert!(full.expect_err("it is taken").to_string().contains("1.png"));
     }
 
     #[test]

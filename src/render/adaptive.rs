@@ -136,6 +136,7 @@ fn refine_tile<S: Simd>(
     while !frame.cancel.is_cancelled() && tile.refinement.take_wanted(&mut wanted) {
         for batch in wanted.chunks(BATCH) {
             visibility::render_grids(simd, frame, [tile.x, tile.y], batch, worker);
+            tile.note_grids(batch, &mut worker.ledger);
             let start = Instant::now();
             store_means(simd, frame, centres, batch, &worker.color, tile);
             worker.stats.stages_ms.resolve += milliseconds_since(start);

@@ -139,7 +139,7 @@ impl<S: Simd> MetallicRoughness<S> {
             own: roughness.simd_ge(S::f32s::splat(simd, 0.0)),
             // A perfect mirror's highlight of a point light has no width: keep it visible and finite.
             alpha2: (alpha * alpha).max(1e-6),
-            f0: V3::all((one - metallic) * 0.04) + color.scale(metallic),
+            f0: skin.f0(simd),
             diffuse: opacity * color.scale((one - metallic) * std::f32::consts::FRAC_1_PI),
         }
     }
@@ -170,12 +170,19 @@ impl<S: Simd> MetallicRoughness<S> {
         let smith_v = n_dot_v * (n_dot_l * n_dot_l * (one - alpha2) + alpha2).sqrt();
         let visibility = S::f32s::splat(simd, 0.5) / (smith_l + smith_v).max(1e-7);
 
-        let x = one - v_dot_h;
-        let x2 = x * x;
-        let schlick = x2 * x2 * x;
-        let fresnel = f0 + (V3::all(one) - f0).scale(schlick);
+        let fresnel = schlick(simd, f0, v_dot_h);
         ((V3::all(one) - fresnel) * diffuse + fresnel.scale(distribution * visibility)).scale(n_dot_l)
     }
+}
+
+/// Share of light that is reflected where its direction has this `cosine` with the normal, given what is reflected of
+/// light from straight ahead (Schlick, Eurographics 1994).
+#[inline(always)]
+pub(super) fn schlick<S: Simd>(simd: S, f0: V3<S::f32s>, cosine: S::f32s) -> V3<S::f32s> {
+    let one = S::f32s::splat(simd, 1.0);
+    let x = one - cosine;
+    let x2 = x * x;
+    f0 + (V3::all(one) - f0).scale(x2 * x2 * x)
 }
 
 /// The value where it is above 0, else 0. What is not a number (the half vector of a light straight behind) is 0 too.

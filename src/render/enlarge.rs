@@ -2,6 +2,7 @@
 
 use super::film::{FilmTile, TILE};
 use super::frame::{Scratch, render_frame};
+use super::ledger::Obtained;
 use super::resolve::Encoder;
 use super::samples::{PACKET, sample_at};
 use super::tile::milliseconds_since;
@@ -41,6 +42,13 @@ impl Between {
     fn nearest(self) -> usize {
         if self.share < 0.5 { self.first } else { self.second }
     }
+}
+
+/// The pixel of `small` whose centre lies within pixel `at` of `size`, if any does: no two within one, since none is smaller.
+fn own(at: usize, size: u32, small: u32) -> Option<u32> {
+    let (at, size, small) = (at as u64, u64::from(size), u64::from(small));
+    let first = at * small / size;
+    (first..small.min(first + 2)).find(|pixel| (2 * pixel + 1) * size / (2 * small) == at).map(|pixel| pixel as u32)
 }
 
 /// One side of the traced picture in pixels.
@@ -112,6 +120,7 @@ fn enlarge<S: Simd>(simd: S, small: &Film, whole: [u32; 2], tile: &mut FilmTile,
                 }
             }
             store_planes(small, tile, across, down);
+            store_ledger(small, whole, tile);
         },
     );
 }
@@ -139,7 +148,7 @@ fn widened(small: &Film, y: usize, across: &[Between]) -> [f32; 3 * TILE] {
 /// The planes that the film keeps: what the nearest pixel of the smaller picture sees.
 fn store_planes(small: &Film, tile: &mut FilmTile, across: &[Between], down: impl Fn(usize) -> Between) {
     let planes = small.planes();
-    if !planes.any() {
+    if !planes.any_seen() {
         return;
     }
     for pixel in 0..tile.width * tile.height {
@@ -150,6 +159,20 @@ fn store_planes(small: &Film, tile: &mut FilmTile, across: &[Between], down: imp
         put(normal, small.normal(x, y));
         put(object, small.object(x, y));
         put(primitive, small.primitive(x, y));
+    }
+}
+
+/// How the pixels were obtained, and their rays: those of the smaller picture's pixels are where their centres lie, all
+/// between them are interpolated.
+fn store_ledger(small: &Film, whole: [u32; 2], tile: &mut FilmTile) {
+    if tile.decision.is_empty() && tile.cost.is_empty() {
+        return;
+    }
+    for pixel in 0..tile.width * tile.height {
+        let x = own(tile.x + pixel % tile.width, whole[0], small.width());
+        let place = x.zip(own(tile.y + pixel / tile.width, whole[1], small.height()));
+        put(tile.decision.get_mut(pixel), place.map_or(Some(Obtained::ENLARGED), |(x, y)| small.decision(x, y)));
+        put(tile.cost.get_mut(pixel), place.map_or(Some(0), |(x, y)| small.cost(x, y)));
     }
 }
 
@@ -169,6 +192,10 @@ mod tests {
         let places = [0, 1, 2, 7].map(|at| Between::of(at, 8, 4)).map(|b| (b.first, b.second, b.share));
         assert_eq!(places, [(0, 1, 0.0), (0, 1, 0.25), (0, 1, 0.75), (3, 3, 0.0)]);
         assert_eq!(Between::of(5, 8, 8).nearest(), 5);
+        for [size, small] in [[8, 4], [7, 5], [5, 5], [9, 1], [640, 449]] {
+            let own: Vec<u32> = (0..size).filter_map(|at| own(at as usize, size, small)).collect();
+            assert!(own.iter().copied().eq(0..small), "{small} of {size}: {own:?}");
+        }
         assert_eq!([scaled(1280, 0.5), scaled(3, 0.1), scaled(7, 1.0)], [640, 1, 7]);
     }
 }

@@ -4,11 +4,13 @@
 
 use super::accumulate::{Accumulated, Progress};
 use super::adaptive::{Centres, Refinement};
+use super::ledger::Obtained;
 use super::resolve::Encoder;
 use super::samples::{Colors, PACKET, pixel_at, sample_at};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Edge of a tile in pixels. Tiles are the unit of work and of memory.
 pub const TILE: usize = 64;
@@ -24,12 +26,21 @@ pub struct Planes {
     pub object: bool,
     /// Primitive index within the object, `u32::MAX` on a miss.
     pub primitive: bool,
+    /// How each pixel was obtained.
+    pub decision: bool,
+    /// Rays that were traced for each pixel.
+    pub cost: bool,
 }
 
 impl Planes {
+    /// Whether any plane of what pixels see is kept.
+    pub fn any_seen(self) -> bool {
+        self.depth || self.normal || self.object || self.primitive
+    }
+
     /// Whether any plane is kept.
     pub fn any(self) -> bool {
-        self.depth || self.normal || self.object || self.primitive
+        self.any_seen() || self.decision || self.cost
     }
 }
 
@@ -47,6 +58,9 @@ pub(super) struct FilmTile {
     pub normal: Vec<[f32; 3]>,
     pub object: Vec<u32>,
     pub primitive: Vec<u32>,
+    pub decision: Vec<Obtained>,
+    /// Rays that were traced for each pixel.
+    pub cost: Vec<u32>,
     pub refinement: Refinement,
     /// The samples of a film that gathers them from frame to frame.
     pub accumulated: Option<Box<Accumulated>>,
@@ -67,6 +81,8 @@ impl FilmTile {
             normal: vec![[0.0; 3]; kept(planes.normal)],
             object: vec![u32::MAX; kept(planes.object)],
             primitive: vec![u32::MAX; kept(planes.primitive)],
+            decision: vec![Obtained::NOTHING; kept(planes.decision)],
+            cost: vec![0; kept(planes.cost)],
             refinement: Refinement::default(),
             accumulated: None,
         }
@@ -169,6 +185,29 @@ impl Film {
         &self.rgba
     }
 
+    /// Paints over the 8-bit picture, pixel by pixel, given what each was; the next frame knows nothing of it.
+    pub fn paint(&mut self, mut color: impl FnMut(&Self, u32, u32, [u8; 3]) -> [u8; 3]) {
+        let mut rgba = std::mem::take(&mut self.rgba);
+        let (pixels, _) = rgba.as_chunks_mut::<4>();
+        for (y, row) in (0..self.height).zip(pixels.chunks_exact_mut(self.width as usize)) {
+            for (x, pixel) in (0..self.width).zip(row) {
+                let [r, g, b, alpha] = *pixel;
+                let [r, g, b] = color(self, x, y, [r, g, b]);
+                *pixel = [r, g, b, alpha];
+            }
+        }
+        self.rgba = rgba;
+    }
+
+    /// Takes over some columns of another's 8-bit picture, of the same size, and nothing else of it.
+    pub fn copy_columns(&mut self, other: &Self, columns: Range<u32>) {
+        let bytes = 4 * columns.start as usize..4 * columns.end as usize;
+        let width = 4 * self.width as usize;
+        for (row, other) in self.rgba.chunks_exact_mut(width).zip(other.rgba.chunks_exact(width)) {
+            row[bytes.clone()].copy_from_slice(&other[bytes.clone()]);
+        }
+    }
+
     /// Linear, unclamped colour of a pixel, before exposure and tone map.
     pub fn color(&self, x: u32, y: u32) -> [f32; 3] {
         let (tile, _) = self.find(x, y);
@@ -197,6 +236,19 @@ impl Film {
     pub fn primitive(&self, x: u32, y: u32) -> Option<u32> {
         let (tile, pixel) = self.find(x, y);
         tile.primitive.get(pixel).copied()
+    }
+
+    /// How a pixel was obtained; `None` when the film keeps no such plane.
+    pub fn decision(&self, x: u32, y: u32) -> Option<Obtained> {
+        let (tile, pixel) = self.find(x, y);
+        tile.decision.get(pixel).copied()
+    }
+
+    /// How many rays were traced for a pixel, of all kinds: those that the frame's stats count, each of which is some pixel's.
+    /// `None` when the film keeps no such plane.
+    pub fn cost(&self, x: u32, y: u32) -> Option<u32> {
+        let (tile, pixel) = self.find(x, y);
+        tile.cost.get(pixel).copied()
     }
 
     fn find(&self, x: u32, y: u32) -> (&FilmTile, usize) {

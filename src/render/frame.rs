@@ -168,8 +168,10 @@ pub(super) struct Frame<'a> {
     pub around_eye: &'a [u32],
     /// Whether anybody asks what samples see.
     pub keeps_seen: bool,
-    /// Whether the film keeps anything of what it sees.
+    /// Whether the film keeps anything of what its pixels see.
     pub keeps_planes: bool,
+    /// Whether the film keeps the rays of its pixels.
+    pub keeps_costs: bool,
     /// Whether anybody asks for the normals of what samples see.
     pub keeps_normals: bool,
     pub encoder: Encoder,
@@ -244,8 +246,9 @@ pub fn render_frame(
             SphereCache::Thesis => SphereTerms::Thesis(sphere_terms),
         },
         around_eye,
-        keeps_seen: film.planes().any() || plan.trails || settings.supersample == Supersample::Adaptive,
-        keeps_planes: film.planes().any(),
+        keeps_seen: film.planes().any_seen() || plan.trails || settings.supersample == Supersample::Adaptive,
+        keeps_planes: film.planes().any_seen(),
+        keeps_costs: film.planes().cost,
         keeps_normals: film.planes().normal || plan.trails,
         encoder: Encoder::new(scene, settings),
         progress: film.progress,

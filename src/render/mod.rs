@@ -17,6 +17,7 @@ mod frame;
 mod gather;
 mod inside;
 mod leave;
+pub mod ledger;
 mod materials;
 mod media;
 mod mirror;
@@ -39,5 +40,6 @@ mod visibility;
 
 pub use film::{Film, Planes};
 pub use frame::{CancelToken, Scratch, render_frame, thread_count};
+pub use ledger::{Decision, Obtained};
 pub use plan::Plan;
 pub use stats::FrameStats;

@@ -1,5 +1,6 @@
 //! The rays that follow from hits: mirrored, and refracted by Snell's law with exact Fresnel terms.
 
+use super::brdf;
 use super::frame::Frame;
 use super::gather::{Hits, bits};
 use super::leave;
@@ -265,12 +266,8 @@ fn mirror_share<S: Simd>(
     if !(frame.plan.metallic_roughness && materials.any(|material| material.metallic_roughness)) {
         return reflectivity;
     }
-    let one = S::f32s::splat(simd, 1.0);
-    let f0 = V3::all((one - skin.metallic) * 0.04) + skin.color.scale(skin.metallic);
-    let x = one - cosine;
-    let x2 = x * x;
-    let schlick = f0 + (V3::all(one) - f0).scale(x2 * x2 * x);
-    V3::select(materials.lanes(simd, |material| material.metallic_roughness), schlick, reflectivity)
+    let fresnel = brdf::schlick(simd, skin.f0(simd), cosine);
+    V3::select(materials.lanes(simd, |material| material.metallic_roughness), fresnel, reflectivity)
 }
 
 /// The bodies that rays are inside of once those in the bit set `crossing` entered or left their objects.

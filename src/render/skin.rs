@@ -50,55 +50,21 @@ impl<S: Simd> Skin<S> {
         sight: &Sight<S>,
     ) -> Self {
         let mut skin = Self::plain(simd, frame, surfaces, materials);
+        // Both are kept apart from packets that need neither, and take the skin by value: what has an address stays in memory.
         if frame.plan.vertex_colors {
-            skin = skin.tinted(simd, frame, hits, surfaces, materials);
+            skin = simd.vectorize(
+                #[inline(always)]
+                move || skin.tint(simd, frame, hits, surfaces, materials),
+            );
         }
         if frame.plan.textures && materials.any(|material| material.textured) {
             let textured = materials.lanes(simd, |material| material.textured).to_bitmask() & hits.active;
-            skin = skin.textured(simd, frame, hits, surfaces, sight, textured);
+            skin = simd.vectorize(
+                #[inline(always)]
+                move || skin.look_up(simd, frame, hits, surfaces, sight, textured),
+            );
         }
         skin
-    }
-
-    /// [`tint`](Self::tint), apart from packets that need none. By value: what has an address stays in memory.
-    #[inline(always)]
-    fn tinted(
-        self,
-        simd: S,
-        frame: &Frame<'_>,
-        hits: &Hits<'_>,
-        surfaces: &Surfaces<S>,
-        materials: &impl Materials<S>,
-    ) -> Self {
-        simd.vectorize(
-            #[inline(always)]
-            move || {
-                let mut skin = self;
-                skin.tint(simd, frame, hits, surfaces, materials);
-                skin
-            },
-        )
-    }
-
-    /// [`look_up`](Self::look_up), in the same way.
-    #[inline(always)]
-    fn textured(
-        self,
-        simd: S,
-        frame: &Frame<'_>,
-        hits: &Hits<'_>,
-        surfaces: &Surfaces<S>,
-        sight: &Sight<S>,
-        textured: u64,
-    ) -> Self {
-        simd.vectorize(
-            #[inline(always)]
-            move || {
-                let mut skin = self;
-                skin.look_up(simd, frame, hits, surfaces, sight, textured);
-                skin
-            },
-        )
     }
 
     /// As the materials have it, whatever textures and corners hold.
@@ -134,6 +100,13 @@ impl<S: Simd> Skin<S> {
         if frame.plan.relief { self.relieved } else { surfaces.shading_normal }
     }
 
+    /// Share of light from straight ahead that a metallic-roughness surface reflects.
+    #[inline(always)]
+    pub fn f0(&self, simd: S) -> V3<S::f32s> {
+        let one = S::f32s::splat(simd, 1.0);
+        V3::all((one - self.metallic) * 0.04) + self.color.scale(self.metallic)
+    }
+
     /// In another colour.
     #[inline(always)]
     pub fn painted(self, color: V3<S::f32s>) -> Self {
@@ -143,13 +116,13 @@ impl<S: Simd> Skin<S> {
     /// Multiplies the colours that corners carry.
     #[inline(always)]
     fn tint(
-        &mut self,
+        mut self,
         simd: S,
         frame: &Frame<'_>,
         hits: &Hits<'_>,
         surfaces: &Surfaces<S>,
         materials: &impl Materials<S>,
-    ) {
+    ) -> Self {
         let corners = hits.gather::<S, 12>(
             simd,
             #[inline(always)]
@@ -167,26 +140,26 @@ impl<S: Simd> Skin<S> {
             let blended = materials.lanes(simd, |material| material.blended) & carried;
             self.coverage = blended.select(self.coverage * a, self.coverage);
         }
+        self
     }
 
     /// Applies textures, to the lanes in the bit set `textured`, object by object.
     #[inline(always)]
     fn look_up(
-        &mut self,
+        mut self,
         simd: S,
         frame: &Frame<'_>,
         hits: &Hits<'_>,
         surfaces: &Surfaces<S>,
         sight: &Sight<S>,
         textured: u64,
-    ) {
+    ) -> Self {
         let ids = &frame.scene.geometry.ids;
         let id = ids[hits.primitives[hits.first()] as usize];
         if hits.common.is_some() {
             let sides = Mask::<S>::splat(simd, id.primitive == 0);
             let object = Object { number: id.object, sides, members: textured };
-            *self = self.looked_up(simd, frame, hits, surfaces, sight, &object);
-            return;
+            return self.looked_up(simd, frame, hits, surfaces, sight, &object);
         }
         let (mut objects, mut parts) = ([id.object; MOST_LANES], [id.primitive; MOST_LANES]);
         for lane in hits.lanes() {
@@ -202,8 +175,9 @@ impl<S: Simd> Skin<S> {
             let members = same.to_bitmask() & left;
             left &= !members;
             let found = self.looked_up(simd, frame, hits, surfaces, sight, &Object { number, sides, members });
-            *self = Self::select(same, &found, self);
+            self = Self::select(same, &found, &self);
         }
+        self
     }
 
     /// What it is with the textures of one object.

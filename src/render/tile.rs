@@ -5,6 +5,7 @@ use super::enlarge::Enlargement;
 use super::extent::Lists;
 use super::film::FilmTile;
 use super::frame::Frame;
+use super::ledger::Ledger;
 use super::media::{Media, MediaMark};
 use super::queue::{RUN, RayQueue, ShadowQueue};
 use super::samples::{Colors, SAMPLES, sample_at};
@@ -47,6 +48,10 @@ pub struct Worker {
     pub(super) lit_cells: u64,
     /// Set of the tile's cells of which one primitive was proven to be all that is seen.
     pub(super) certain_cells: u64,
+    /// Set of the tile's cells whose eye rays were traced, since too much was listed for them.
+    pub(super) traced_cells: u64,
+    /// Rays of the samples, if the film keeps them.
+    pub(super) ledger: Ledger,
     pub(super) lists: Option<Box<Lists>>,
     /// Queues whose turn has not come, the next one last.
     waiting: Vec<Waiting>,
@@ -142,6 +147,7 @@ pub(super) fn render<S: Simd>(simd: S, frame: &Frame<'_>, tile: &mut FilmTile, w
         }
     }
     tile.store_planes(frame, &worker.seen);
+    tile.store_ledger(frame, worker);
     let start = Instant::now();
     tile.encode(simd, &frame.encoder);
     worker.stats.stages_ms.resolve += milliseconds_since(start);
@@ -155,6 +161,9 @@ impl Worker {
         self.color.prepare();
         self.lit_cells = 0;
         self.seen.resize(SAMPLES, Seen::NOTHING);
+        if frame.keeps_costs {
+            self.ledger.begin_tile();
+        }
     }
 
     /// Rays and bodies that there is memory for, in queues that rays follow each other through.
@@ -209,7 +218,7 @@ impl Worker {
         let mut level = 1;
         loop {
             self.shade_level(simd, frame, level);
-            self.queue_followers(level + 1);
+            self.queue_followers(frame, level + 1);
             if frame.cancel.is_cancelled() {
                 self.spare.extend(self.waiting.drain(..).map(|waiting| waiting.rays));
             }
@@ -256,10 +265,13 @@ impl Worker {
     }
 
     /// Lets the rays that follow wait, mirrored ones next.
-    fn queue_followers(&mut self, level: u32) {
+    fn queue_followers(&mut self, frame: &Frame<'_>, level: u32) {
         let media = self.media.mark();
         for followers in [&mut self.refracted, &mut self.mirrored] {
             if followers.len() > 0 {
+                if frame.keeps_costs {
+                    self.ledger.add_all(&followers.sample[..followers.len()]);
+                }
                 let empty = self.spare.pop().unwrap_or_default();
                 self.waiting.push(Waiting { level, media, rays: std::mem::replace(followers, empty) });
             }

@@ -20,7 +20,15 @@ pub(super) fn closest_hits<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Wor
 pub(super) fn primary_hits<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
     let search = eye_search(frame);
     trace_queue(simd, &search, frame.camera.near, frame.camera.far, &mut worker.rays, &mut worker.stack);
-    worker.stats.rays.primary += worker.rays.len() as u64;
+    count_primary(frame, 0..worker.rays.len(), worker);
+}
+
+/// Counts rays from the eye.
+fn count_primary(frame: &Frame<'_>, range: Range<usize>, worker: &mut Worker) {
+    worker.stats.rays.primary += range.len() as u64;
+    if frame.keeps_costs {
+        worker.ledger.add_all(&worker.rays.sample[range]);
+    }
 }
 
 /// Distance of what a ray is taken to see until it is tested; of those that miss it, until they are traced.
@@ -70,6 +78,7 @@ pub(super) fn retrace<S: Simd>(simd: S, frame: &Frame<'_>, places: &[u32], worke
     found.extend_from_eye(frame.camera.eye, OUTSIDE, places.len());
     for (to, &from) in places.iter().enumerate() {
         found.direction.set(to, rays.direction.get(from as usize));
+        found.sample[to] = rays.sample[from as usize];
     }
     std::mem::swap(rays, found);
     primary_hits(simd, frame, worker);
@@ -83,7 +92,7 @@ pub(super) fn retrace<S: Simd>(simd: S, frame: &Frame<'_>, places: &[u32], worke
 /// Finds the closest hits of some of the rays from the eye in `worker.rays`, and perhaps of rays behind them.
 pub(super) fn primary_range<S: Simd>(simd: S, frame: &Frame<'_>, range: Range<usize>, worker: &mut Worker) {
     let search = eye_search(frame);
-    worker.stats.rays.primary += range.len() as u64;
+    count_primary(frame, range.clone(), worker);
     trace_range(simd, &search, range, frame.camera.near, frame.camera.far, worker);
 }
 

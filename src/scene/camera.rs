@@ -1,9 +1,11 @@
 //! The pinhole camera: position, direction and field of view, and the rays it makes.
 
 use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// A pinhole camera in a right-handed world; angles in degrees, the field of view vertical.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(into = "Written", try_from = "Written")]
 pub struct Camera {
     /// Position of the eye.
     pub eye: Vec3,
@@ -32,6 +34,41 @@ impl Default for Camera {
     }
 }
 
+/// A camera as a scene file writes it.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    position: [f32; 3],
+    look_at: [f32; 3],
+    up: [f32; 3],
+    fov: f32,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    near: f32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    far: Option<f32>,
+}
+
+fn is_zero(near: &f32) -> bool {
+    *near == 0.0
+}
+
+impl From<Camera> for Written {
+    fn from(Camera { eye, look_at, up, fov, near, far }: Camera) -> Self {
+        let (position, look_at, up) = (eye.to_array(), look_at.to_array(), up.to_array());
+        Self { position, look_at, up, fov, near, far: far.is_finite().then_some(far) }
+    }
+}
+
+impl TryFrom<Written> for Camera {
+    type Error = &'static str;
+
+    fn try_from(Written { position, look_at, up, fov, near, far }: Written) -> Result<Self, Self::Error> {
+        let far = far.unwrap_or(f32::INFINITY);
+        let camera = Self { eye: position.into(), look_at: look_at.into(), up: up.into(), fov, near, far };
+        if camera.is_valid() { Ok(camera) } else { Err("the camera cannot make rays") }
+    }
+}
+
 /// The camera's basis for one picture size: pixel (x, y), row 0 on top, looks along
 /// `forward + (2(x + .5)/W - 1) right + (1 - 2(y + .5)/H) up`, where `right` and `up` are already
 /// scaled by the field of view and the picture's aspect.
@@ -56,6 +93,12 @@ pub struct CameraFrame {
 }
 
 impl Camera {
+    /// The camera as JSON, as in a scene file. Read again it is the same, bit for bit.
+    pub fn to_json(&self) -> String {
+        // Numbers and lists can always be written.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
     /// A camera at `eye` with `yaw` 0 looking along -Z, positive turning left, and positive `pitch` looking up (degrees).
     pub fn from_yaw_pitch(eye: Vec3, yaw: f32, pitch: f32, fov: f32) -> Self {
         let (yaw, pitch) = (f64::from(yaw).to_radians(), f64::from(pitch).to_radians());

@@ -158,6 +158,8 @@ pub struct Material<T = u32> {
     pub absorption: Vec3,
     /// Whether even closed shapes bound no body: light passes through without bending.
     pub thin: bool,
+    /// Whether it stands in for one that its file does not name.
+    pub is_stand_in: bool,
     /// What the opacity means.
     pub alpha: Alpha,
     /// Multiplies the colour texture's alpha, from 0 to 1.
@@ -198,6 +200,7 @@ impl<T> Material<T> {
             fresnel: false,
             absorption: Vec3::ZERO,
             thin: false,
+            is_stand_in: false,
             alpha: Alpha::Opaque,
             opacity: 1.0,
             relief: Relief::NONE,
@@ -217,6 +220,14 @@ impl<T> Material<T> {
     /// Whether even closed shapes of it bound no body.
     pub fn is_thin(&self) -> bool {
         self.thin || self.is_blended()
+    }
+
+    /// Takes the metal from a metallic-roughness material: rough metal looks the same all over where the only light is at
+    /// the eye.
+    pub fn take_metal(&mut self) {
+        if let Model::MetallicRoughness { metallic, .. } = &mut self.model {
+            *metallic = 0.0;
+        }
     }
 
     /// The same material with its textures named in another way.
@@ -253,6 +264,7 @@ impl<T> Material<T> {
             fresnel: self.fresnel,
             absorption: self.absorption,
             thin: self.thin,
+            is_stand_in: self.is_stand_in,
             alpha: self.alpha,
             opacity: self.opacity,
         })

@@ -26,7 +26,7 @@ pub mod texture;
 pub use builtin::{builtin, nothing};
 pub use camera::Camera;
 pub use error::{SceneError, Warning};
-pub use format::{FORMATS, Format, LoadOptions, load, load_embedded, load_text};
+pub use format::{FORMATS, Format, LoadOptions, load, load_embedded, load_text, read_camera};
 pub use light::Light;
 pub use limits::Limits;
 pub use material::Material;

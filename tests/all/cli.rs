@@ -127,6 +127,7 @@ fn wrong_usage_is_exit_2() {
         "bench scene.json --redraw -o out",
         "render --aov colour -o a.exr",
         "--aov depth",
+        "--terminal",
         "render scene.json --camera nobody",
         "render scene.json --eye 0,0,0 --look-at 0,0,0",
         "render --path walk.json --eye 1,2,3",
@@ -473,6 +474,20 @@ fn a_closed_pipe_is_no_failure() {
         assert_eq!(shell.status.code(), Some(1));
         assert!(text(&shell.stderr).starts_with("error: cannot write to standard output"));
     }
+}
+
+#[test]
+fn maps_are_pictures_of_eight_bits() {
+    let bench = Bench::new();
+    bench.write("scene.json", SCENE);
+    let mut pictures = Vec::new();
+    for map in ["picture", "decisions", "cost", "depth", "normals", "objects", "error"] {
+        bench.done(&format!("render scene.json --size 40x30 --preset balanced --map {map} -o {map}.png"));
+        pictures.push(fs::read(bench.path(&format!("{map}.png"))).expect("it was written"));
+    }
+    assert!((1..pictures.len()).all(|i| !pictures[..i].contains(&pictures[i])), "two maps are alike");
+    assert!(bench.refused(2, "render scene.json --map cost -o cost.exr").contains("--aov"));
+    assert!(bench.refused(2, "render scene.json --map colour -o cost.png").contains("decisions"));
 }
 
 #[cfg(unix)]

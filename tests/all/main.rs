@@ -16,6 +16,7 @@ mod formats;
 mod gltf;
 mod imports;
 mod interpolation;
+mod maps;
 mod our_scenes;
 mod overlay;
 #[path = "../common/picture_bits.rs"]
@@ -32,6 +33,7 @@ mod stress;
 mod subsampling;
 mod surfaces;
 mod temporary;
+mod terminal;
 #[path = "../common/tracer/mod.rs"]
 mod tracer;
 mod tune;

@@ -2,15 +2,20 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use raywalk::app::exam::{Exam, RowCost, Subject};
 use raywalk::app::history::History;
+use raywalk::app::input::HELP;
 use raywalk::app::inspection::Inspection;
+use raywalk::app::labels::Labels;
 use raywalk::app::lighting::Dial;
+use raywalk::app::maps::{Class, Key, Legend, Map, Scale};
+use raywalk::app::methods::{self, Methods, Side};
 use raywalk::app::overlay::{self, Change, Notices, Showing, Shown, Tuning, View, theme};
 use raywalk::app::scenes::{Failure, Loading, Report, Wish};
 use raywalk::app::survey::{End, Point, Survey};
 use raywalk::geometry::{Aabb, Geometry};
 use raywalk::math::simd;
-use raywalk::measure::metric::{METRICS, metric};
+use raywalk::measure::metric::{METRICS, Score, metric};
 use raywalk::measure::tune::Bound;
 use raywalk::render::FrameStats;
 use raywalk::scene::progress::Step;
@@ -44,6 +49,7 @@ struct Panel {
     scene: Scene,
     settings: Settings,
     history: History,
+    stats: FrameStats,
     shown: Shown,
     showing: Showing,
     bound: Bound,
@@ -52,6 +58,8 @@ struct Panel {
     lights: Vec<Dial>,
     inspection: Option<Inspection>,
     notices: Notices,
+    labels: Labels,
+    methods: Methods,
     changes: Vec<Change>,
 }
 
@@ -61,10 +69,12 @@ impl Panel {
         let shown = Shown::default();
         let (history, showing) = (History::default(), Showing::AsSet);
         let bound = Bound::parse("flip=0.01").expect("right");
+        let methods = Methods::new(&settings);
         Self {
             scene: scene(),
             settings,
             history,
+            stats: FrameStats::default(),
             shown,
             showing,
             bound,
@@ -73,6 +83,8 @@ impl Panel {
             lights: Vec::new(),
             inspection: None,
             notices: Notices::default(),
+            labels: Labels::default(),
+            methods,
             changes: Vec::new(),
         }
     }
@@ -80,8 +92,8 @@ impl Panel {
     fn show(&mut self, ui: &mut egui::Ui) {
         let view = View {
             scene: &self.scene,
-            settings: &self.settings,
-            stats: &FrameStats::default(),
+            settings: self.methods.edited(&self.settings),
+            stats: &self.stats,
             history: &self.history,
             resting: false,
             size: (1280, 720),
@@ -92,6 +104,9 @@ impl Panel {
             fov: 60.0,
             sensitivity: 0.12,
             invert_look: false,
+            ui_scale: 1.0,
+            methods: &self.methods,
+            left: &self.settings,
             tuning: Tuning {
                 bound: self.bound,
                 survey: self.survey.as_ref(),
@@ -104,10 +119,14 @@ impl Panel {
             stands: Some(Camera::default()),
             crosshair: true,
             notices: self.notices.current(),
+            labels: &self.labels,
+            activity: None,
         };
         let changes = overlay::show(ui, &view, self.shown);
         for change in &changes {
             match change {
+                Change::Settings(settings) if self.methods.edits_right() => self.methods.split.right = settings.clone(),
+                Change::Methods(change) => self.methods.apply(change, &self.settings),
                 Change::Settings(settings) => self.settings = settings.clone(),
                 Change::Bound(bound) => self.bound = *bound,
                 _ => {}
@@ -146,6 +165,103 @@ fn every_setting_has_a_control_that_shows_its_promise() {
     let promises = ["same pixels", "approximate", "different picture"];
     let shown: usize = promises.iter().map(|promise| harness.query_all_by_label(promise).count()).sum();
     assert_eq!(shown, ROWS.len());
+}
+
+#[test]
+fn every_setting_tells_its_help_where_it_is_pointed_at() {
+    for row in ROWS {
+        let mut harness = Panel::new().harness();
+        let control = harness.get_all_by_label(row.name).next_back().expect("a control");
+        control.hover();
+        harness.run_steps(30);
+        harness.get_by_label(row.help);
+    }
+}
+
+#[test]
+fn the_help_names_every_key_setting_value_and_preset() {
+    let mut panel = Panel::new();
+    (panel.shown.panel, panel.shown.help) = (false, true);
+    let mut harness = panel.harness();
+    for (keys, what) in HELP {
+        assert!(harness.query_all_by_label(keys).count() > 0 && harness.query_all_by_label(what).count() > 0, "{keys}");
+    }
+    for row in ROWS {
+        harness.get_by_label(row.help);
+        assert!(harness.query_all_by_label(row.name).count() > 0, "{}", row.name);
+        if let Kind::Choice(choices) = &row.kind {
+            for group in choices.chunk_by(|a, b| a.promise == b.promise) {
+                let values: Vec<&str> = group.iter().map(|choice| choice.value).collect();
+                assert!(harness.query_all_by_label(&values.join(", ")).count() > 0, "{} {values:?}", row.name);
+            }
+        }
+    }
+    for preset in PRESETS {
+        harness.get_by_label(preset.help);
+    }
+    for word in ["Certified visibility", "Subsampling", "Caches", "1 % low"] {
+        harness.get_by_label(word);
+    }
+    harness.get_by_label("Close window").click();
+    harness.run();
+    assert_eq!(harness.state().changes, [Change::ToggleHelp]);
+}
+
+#[test]
+fn the_help_fits_in_small_windows() {
+    for size in [egui::vec2(60.0, 60.0), egui::vec2(200.0, 140.0), egui::vec2(300.0, 200.0), egui::vec2(1280.0, 720.0)]
+    {
+        let mut panel = Panel::new();
+        panel.shown.help = true;
+        let mut harness = Harness::builder()
+            .with_size(size)
+            .with_context_setup(theme::apply)
+            .build_ui_state(|ui, panel: &mut Panel| panel.show(ui), panel);
+        harness.run();
+        let Some(cross) = harness.query_by_label("Close window").map(|cross| cross.rect()) else {
+            assert!(size.x < 200.0, "no help in {size}");
+            continue;
+        };
+        assert!(egui::Rect::from_min_size(egui::Pos2::ZERO, size).contains_rect(cross), "{cross:?} in {size}");
+    }
+}
+
+#[test]
+fn panel_and_text_can_be_made_larger() {
+    let mut harness = Panel::new().harness();
+    let slider = harness.get_all_by_label("panel size").next_back().expect("a slider");
+    slider.set_value_accesskit(1.5);
+    harness.run();
+    assert_eq!(harness.state().changes, [Change::UiScale(1.5)]);
+}
+
+#[test]
+fn the_slowest_frames_are_told_of() {
+    let mut panel = Panel::new();
+    let start = Instant::now();
+    for i in 0..1000 {
+        panel.history.record(start + Duration::from_millis(8) * i, if i == 500 { 200.0 } else { 8.0 });
+    }
+    let harness = panel.harness();
+    harness.get_by_label("median 8.0   p95 8.0   p99 8.0   max 200.0 ms");
+    harness.get_by_label("1 % low 36.8 fps");
+}
+
+#[test]
+fn stages_and_rays_are_bars_that_tell_their_parts() {
+    let mut panel = Panel::new();
+    panel.stats.stages_ms.visibility = 3.0;
+    panel.stats.stages_ms.shadow = 1.0;
+    panel.stats.rays.primary = 1000;
+    panel.stats.rays.shadow = 3000;
+    let mut harness = panel.harness();
+    for (bar, told) in
+        [("CPU time", "visibility: 3.00 ms, 75 % of the CPU time"), ("rays", "shadow: 3 000, 75 % of the rays")]
+    {
+        harness.get_by_role_and_label(egui::accesskit::Role::Image, bar).hover();
+        harness.run_steps(30);
+        harness.get_by_label(told);
+    }
 }
 
 #[test]
@@ -241,6 +357,22 @@ fn the_status_line_says_rate_time_and_size() {
 }
 
 #[test]
+fn walking_is_switched_and_keys_have_the_users_names() {
+    let mut panel = Panel::new();
+    let z = winit::keyboard::Key::Character("z".into());
+    panel.labels.learn(winit::keyboard::PhysicalKey::Code(winit::keyboard::KeyCode::KeyW), &z);
+    let mut harness = panel.harness();
+    harness.get_by_label("walk").click();
+    harness.run();
+    assert_eq!(harness.state().changes, [Change::Walking(true)]);
+    for section in ["Settings", "Last frame", "Keys"] {
+        harness.get_by_label(section).click();
+        harness.run();
+    }
+    harness.get_by_label("Z A S D");
+}
+
+#[test]
 fn notices_are_read_even_when_all_else_is_hidden() {
     let mut panel = Panel::new();
     panel.shown.overlay = false;
@@ -264,6 +396,9 @@ fn what_the_picture_is_stands_below_the_status_line() {
         (Showing::Moving { preset: None, scale: 0.5 }, Settings::fast(), "moving: scale 0.5"),
         (Showing::Refined(9), Settings::exact(), "refined 9/16"),
         (Showing::Refined(16), Settings::exact(), "at rest: 16 samples"),
+        (Showing::Exact(None), Settings::fast(), "the exact picture, while X is held"),
+        (Showing::Exact(Some(16)), Settings::fast(), "the exact picture, 16 samples, while X is held"),
+        (Showing::ExactSoon, Settings::fast(), "tracing the exact picture"),
     ] {
         let mut panel = Panel::new();
         (panel.showing, panel.settings, panel.shown.panel) = (showing, settings, false);
@@ -302,7 +437,7 @@ fn tuning(survey: Option<Survey>) -> Harness<'static, Panel> {
     let mut harness = panel.harness();
     assert!(harness.query_by_label("Measure front").is_none(), "closed at first");
     // What is above is closed, so that there is room.
-    for section in ["Settings", "Last frame", "Time against error"] {
+    for section in ["Settings", "Last frame", "What the methods do", "Time against error"] {
         harness.get_by_label(section).click();
         harness.run();
     }
@@ -467,4 +602,135 @@ fn a_thing_that_was_pointed_at_is_told_of() {
     harness.get_by_label("Close").click();
     harness.run();
     assert_eq!(harness.state_mut().changes.pop(), Some(Change::CloseInspection));
+}
+
+/// A panel with room for its section on what the methods do.
+fn methods_panel(panel: Panel) -> Harness<'static, Panel> {
+    let mut harness = panel.harness();
+    for section in ["Settings", "Last frame"] {
+        harness.get_by_label(section).click();
+        harness.run();
+    }
+    harness
+}
+
+#[test]
+fn every_map_can_be_chosen_and_the_status_line_says_which() {
+    for map in Map::ALL.into_iter().skip(1) {
+        let mut harness = methods_panel(Panel::new());
+        harness.get_by_label("map").click();
+        harness.run();
+        harness.get_by_role_and_label(egui::accesskit::Role::Button, map.name()).click();
+        harness.run();
+        assert_eq!(harness.state().changes, [Change::Methods(methods::Change::Map(map))]);
+        harness.get_by_label(&format!("map of {}, as set: 1 sample", map.name()));
+    }
+}
+
+#[test]
+fn a_legend_says_what_colors_mean_and_goes_with_the_overlay() {
+    let class = |name, share| Class { name, color: [200, 100, 0], shares: vec![share] };
+    let classes = Key::Classes(vec![class("certified", 0.75), class("traced", 0.25)]);
+    let marks = vec![(0.0, "0".to_owned()), (1.0, "255".to_owned())];
+    let scale = Key::Scale(Scale { marks, unit: "steps of 255", sums: vec!["max 17, RMSE 0.31".to_owned()] });
+    for (map, key, words) in [
+        (Map::Decisions, classes, [" 75.0 %", "traced"]),
+        (Map::Error, scale, ["error: steps of 255", "max 17, RMSE 0.31"]),
+    ] {
+        let mut panel = Panel::new();
+        panel.methods.map = map;
+        panel.methods.legend = Some(Legend { map, key });
+        panel.shown.panel = false;
+        let mut harness = panel.harness();
+        for words in words {
+            harness.get_by_label(words);
+        }
+        harness.state_mut().showing = Showing::Exact(None);
+        harness.run();
+        assert!(harness.query_by_label(words[0]).is_none(), "it is not the map that is seen");
+        harness.state_mut().showing = Showing::AsSet;
+        harness.state_mut().shown.overlay = false;
+        harness.run();
+        assert!(harness.query_by_label(words[0]).is_none());
+    }
+}
+
+#[test]
+fn two_sides_are_edited_apart_and_told_at_the_divider() {
+    let mut harness = methods_panel(Panel::new());
+    harness.get_by_label("side by side").click();
+    harness.run();
+    harness.state_mut().methods.split.milliseconds = [14.24, 61.3];
+    harness.get_by_label("Settings").click();
+    harness.run();
+    harness.get_by_label("balanced | 14.2 ms");
+    harness.get_by_label("exact | 61.3 ms");
+    harness.get_by_label("right").click();
+    harness.run();
+    harness.get_by_label("fast").click();
+    harness.run();
+    assert_eq!(harness.state().settings, Settings::balanced(), "the left side stays");
+    assert_eq!(harness.state().methods.split.right, Settings::fast());
+    harness.get_by_label("fast | 61.3 ms");
+    harness.get_by_label("Copy left to right").click();
+    harness.run();
+    assert_eq!(harness.state().methods.split.right, Settings::balanced());
+    assert_eq!(harness.state().methods.split.edited, Side::Right);
+}
+
+#[test]
+fn the_divider_is_dragged_with_the_pointer() {
+    let mut panel = Panel::new();
+    panel.methods.split.is_on = true;
+    panel.shown.panel = false;
+    let mut harness = panel.harness();
+    harness.run();
+    harness.drag_at(egui::pos2(400.0, 900.0));
+    harness.run();
+    harness.hover_at(egui::pos2(560.0, 940.0));
+    harness.run();
+    harness.drop_at(egui::pos2(560.0, 940.0));
+    harness.run();
+    let share = harness.state().methods.split.share();
+    assert!((share - 0.7).abs() < 0.005, "{share}");
+}
+
+#[test]
+fn errors_and_costs_are_measured_on_demand() {
+    let mut harness = methods_panel(Panel::new());
+    harness.get_by_label("Measure errors").click();
+    harness.run();
+    harness.get_by_label("Measure costs").click();
+    harness.run();
+    let asked = [methods::Change::MeasureErrors, methods::Change::MeasureCosts].map(Change::Methods);
+    assert_eq!(harness.state().changes, asked);
+
+    let mut exam = Exam::new(Subject::Errors, Camera::default(), Settings::balanced(), (16, 9));
+    exam.errors = vec![("psnr", Score::Number(47.123))];
+    harness.state_mut().methods.exam = Some(exam.clone());
+    harness.run();
+    harness.get_by_label("47.12 dB");
+    harness.get_by_label("Stop measuring").click();
+    harness.run();
+    assert_eq!(harness.state().changes[2..], [Change::Methods(methods::Change::Stop)]);
+    exam.has_ended = true;
+    harness.state_mut().methods.exam = Some(exam);
+    harness.state_mut().settings = Settings::fast();
+    harness.run();
+    harness.get_by_label("measured with other settings");
+}
+
+#[test]
+fn what_a_setting_saves_stands_beside_it_until_settings_change() {
+    let mut panel = Panel::new();
+    let mut exam = Exam::new(Subject::Costs, Camera::default(), panel.settings.clone(), (16, 9));
+    let other = "off".to_owned();
+    exam.costs = vec![RowCost { row: "shadow-cache", other, cpu_ms: 62.0, other_ms: 100.0, is_bound: false }];
+    exam.has_ended = true;
+    panel.methods.exam = Some(exam);
+    let mut harness = panel.harness();
+    harness.get_by_label("-38 %");
+    harness.state_mut().settings.shadows = false;
+    harness.run();
+    assert!(harness.query_by_label("-38 %").is_none());
 }

@@ -55,7 +55,7 @@ impl PictureBits {
 
 /// A film that keeps every plane.
 pub fn film((width, height): (u32, u32)) -> Film {
-    Film::new(width, height, Planes { depth: true, normal: true, object: true, primitive: true })
+    Film::new(width, height, Planes { depth: true, normal: true, object: true, primitive: true, ..Planes::default() })
 }
 
 /// Renders one frame with a scratch of its own.

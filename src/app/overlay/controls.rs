@@ -1,6 +1,7 @@
 //! A control for every setting, made from the list of settings, and the controls of the view.
 
 use super::{Change, View, theme};
+use crate::app::UI_SCALES;
 use crate::app::walker::{EYE_HEIGHT_RANGE, FOV_RANGE};
 use crate::math::simd;
 use crate::settings::{Choice, Kind, ROWS, Row, Settings};
@@ -9,10 +10,10 @@ use egui::{ComboBox, DragValue, Grid, Response, RichText, Slider, Ui};
 /// Whole-number ranges wider than this get a number to drag: on a slider every pixel would be a leap.
 const WIDEST_SLIDER: f64 = 128.0;
 
-/// One row per setting: name, control, and what the value promises.
+/// One row per setting: name, control, what the value promises, and what it costs or saves once that is measured.
 pub fn settings(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     let mut settings = view.settings.clone();
-    Grid::new("settings").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
+    Grid::new("settings").num_columns(4).spacing([8.0, 4.0]).show(ui, |ui| {
         for row in ROWS {
             let value = (row.get)(&settings);
             let name = ui.label(RichText::new(row.name).color(theme::WEAK)).on_hover_text(row.help);
@@ -20,6 +21,10 @@ pub fn settings(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
             response.labelled_by(name.id).on_hover_text(row.help);
             if let Some(promise) = row.promise(&value) {
                 ui.label(RichText::new(promise.to_string()).small().color(theme::promise_color(promise)));
+            }
+            if let Some(cost) = view.methods.cost(row.name, view.settings) {
+                let color = if cost.change() < 0.0 { theme::ACCENT } else { theme::WEAK };
+                ui.label(RichText::new(cost.short()).small().color(color)).on_hover_text(cost.words());
             }
             ui.end_row();
             if let Some(wanted) = wanted {
@@ -145,7 +150,28 @@ pub fn view(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
         let mut invert = view.invert_look;
         labelled(ui, "invert look", "mouse forward looks down", |ui| ui.checkbox(&mut invert, ""))
             .then(|| changes.push(Change::InvertLook(invert)));
+        ui_scale(ui, view.ui_scale, changes);
     });
+}
+
+/// The size of panel and text. It is let stand until the slider is let go, which else would move away from the pointer.
+fn ui_scale(ui: &mut Ui, scale: f32, changes: &mut Vec<Change>) {
+    let label = ui.label(RichText::new("panel size").color(theme::WEAK));
+    let id = ui.scope_id().with("panel size");
+    let mut wanted = ui.data(|data| data.get_temp(id)).unwrap_or(scale);
+    let slider = Slider::new(&mut wanted, UI_SCALES).step_by(0.05).custom_formatter(|scale, _| rounded(scale));
+    let response = ui.add(slider).labelled_by(label.id);
+    let held = response.dragged();
+    response.on_hover_text("of panel and text alone (Ctrl with +, - and 0); render-scale is the picture's");
+    ui.end_row();
+    if held {
+        ui.data_mut(|data| data.insert_temp(id, wanted));
+    } else {
+        ui.data_mut(|data| data.remove_temp::<f32>(id));
+        if wanted != scale {
+            changes.push(Change::UiScale(wanted));
+        }
+    }
 }
 
 /// A named control; true when it was changed.

@@ -1,7 +1,8 @@
 //! The frame-time graph: one bar a frame, newest on the right, and the percentiles below.
 
 use super::theme;
-use crate::app::history::History;
+use crate::app::history::{History, ONE_PERCENT_LOW, Summary};
+use crate::measure::statistics::Spread;
 use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, vec2};
 
 /// Height in points.
@@ -35,11 +36,21 @@ pub fn show(ui: &mut Ui, history: &History) {
         let place = Pos2::new(rect.left() + 4.0, height);
         painter.text(place, Align2::LEFT_CENTER, format!("{mark} ms"), FontId::proportional(10.0), theme::WEAK);
     }
-    let figure = |percent| history.percentile(percent).map_or_else(|| "-".to_owned(), |ms| format!("{ms:.1}"));
-    let line =
-        format!("median {}   p95 {}   p99 {}   max {} ms", figure(50.0), figure(95.0), figure(99.0), figure(100.0));
-    ui.label(RichText::new(line).small().color(theme::WEAK))
-        .on_hover_text("frame times that so many percent stay within");
+    let (times, low) = history.summary().map_or_else(|| ("no frame yet".to_owned(), String::new()), words);
+    for (line, told) in [(times, SPREAD), (low, ONE_PERCENT_LOW)].into_iter().filter(|(line, _)| !line.is_empty()) {
+        ui.label(RichText::new(line).small().color(theme::WEAK)).on_hover_text(told);
+    }
+}
+
+/// What the line of percentiles means.
+const SPREAD: &str = "of the last 1000 frames: half take no longer than the median, 95 % no longer than p95, 99 % no \
+                      longer than p99";
+
+/// "median 8.0   p95 8.0   p99 8.0   max 200.0 ms" and "1 % low 36.8 fps".
+fn words(Summary { spread, one_percent_low }: Summary) -> (String, String) {
+    let Spread { median, p95, p99, max, .. } = spread;
+    let times = format!("median {median:.1}   p95 {p95:.1}   p99 {p99:.1}   max {max:.1} ms");
+    (times, format!("1 % low {one_percent_low:.1} fps"))
 }
 
 /// The milliseconds at the top: room for the highest bar, and no lower than a display's frame.

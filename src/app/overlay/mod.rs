@@ -3,11 +3,16 @@
 //! Architecture invariant: nothing here knows of a window, a device or a thread, so all of it is tested
 //! without any of them.
 
+mod bars;
 mod controls;
+mod divider;
 mod figures;
 mod graph;
+mod help;
 mod inspection;
+mod legend;
 mod lights;
+mod methods;
 pub mod notice;
 mod scenes;
 pub mod theme;
@@ -18,9 +23,11 @@ pub use tuning::{Tuning, usual_bound};
 
 use super::at_rest::SAMPLES;
 use super::history::History;
-use super::input::HELP;
 use super::inspection::Inspection;
+use super::labels::Labels;
 use super::lighting::Dial;
+use super::maps::Map;
+use super::methods::{self as seen, Methods};
 use super::scenes::{Report, Wish};
 use crate::measure::tune::Bound;
 use crate::render::FrameStats;
@@ -62,6 +69,12 @@ pub struct View<'a> {
     pub sensitivity: f64,
     /// Mouse forward looks down.
     pub invert_look: bool,
+    /// How many times as large as usual panel and text are.
+    pub ui_scale: f32,
+    /// What is to be seen of the methods; the settings are those of the side that is edited.
+    pub methods: &'a Methods,
+    /// The settings of the left side, or of all of the picture.
+    pub left: &'a Settings,
     /// What is known of other settings.
     pub tuning: Tuning<'a>,
     /// What there is to say of scenes.
@@ -76,6 +89,10 @@ pub struct View<'a> {
     pub crosshair: bool,
     /// What was just done or went wrong.
     pub notices: &'a [Notice],
+    /// How keys are called on the user's keyboard.
+    pub labels: &'a Labels,
+    /// What goes on beside: "recording", "replaying".
+    pub activity: Option<&'a str>,
 }
 
 /// What the picture is, against what the settings ask for.
@@ -92,9 +109,18 @@ pub enum Showing {
     },
     /// At rest, with so many samples a pixel of 16.
     Refined(u32),
+    /// The exact picture, refined or not.
+    Exact(Option<u32>),
+    /// The exact picture will be shown.
+    ExactSoon,
 }
 
 impl Showing {
+    /// Whether it is, or will be, the exact picture.
+    fn is_exact(self) -> bool {
+        matches!(self, Self::Exact(_) | Self::ExactSoon)
+    }
+
     /// In words: "moving: fast, scale 0.7", "refined 9/16", "at rest: 16 samples".
     fn words(self, settings: &Settings) -> String {
         match self {
@@ -108,6 +134,9 @@ impl Showing {
                 let lowered: Vec<String> = preset.map(str::to_owned).into_iter().chain(scale).collect();
                 format!("moving: {}", lowered.join(", "))
             }
+            Self::Exact(Some(samples)) => format!("the exact picture, {samples} samples, while X is held"),
+            Self::Exact(None) => "the exact picture, while X is held".to_owned(),
+            Self::ExactSoon => "tracing the exact picture".to_owned(),
             Self::Refined(SAMPLES) => format!("at rest: {SAMPLES} samples"),
             Self::Refined(samples) => format!("refined {samples}/{SAMPLES}"),
         }
@@ -121,18 +150,25 @@ pub struct Shown {
     pub overlay: bool,
     /// The panel below the status line.
     pub panel: bool,
+    /// The help window.
+    pub help: bool,
 }
 
 impl Default for Shown {
     fn default() -> Self {
-        Self { overlay: true, panel: true }
+        Self { overlay: true, panel: true, help: false }
     }
 }
 
 impl Shown {
     /// With the panel where it was not seen, and without it where it was.
     pub fn with_panel_toggled(self) -> Self {
-        Self { overlay: true, panel: !(self.overlay && self.panel) }
+        Self { overlay: true, panel: !(self.overlay && self.panel), ..self }
+    }
+
+    /// With the help where it was not seen, and without it where it was.
+    pub fn with_help_toggled(self) -> Self {
+        Self { overlay: true, help: !(self.overlay && self.help), ..self }
     }
 }
 
@@ -163,6 +199,10 @@ pub enum Change {
     Search(Bound),
     /// End the search.
     StopSearch,
+    /// Panel and text this many times as large as usual.
+    UiScale(f32),
+    /// Something of what is to be seen of the methods.
+    Methods(seen::Change),
     /// Open or close the panel.
     TogglePanel,
     /// Something about scenes.
@@ -173,6 +213,8 @@ pub enum Change {
     ResetLights,
     /// Tell no longer of what was pointed at.
     CloseInspection,
+    /// Open or close the help.
+    ToggleHelp,
 }
 
 /// Draws the overlay and returns what was asked for, in order.
@@ -186,7 +228,11 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
     }
     inspection::show(ui, view, &mut changes);
     let available = ui.ctx().content_rect();
-    egui::Area::new(egui::Id::unique("overlay"))
+    if !view.showing.is_exact() {
+        divider::show(ui, view, available, &mut changes);
+        legend::show(ui, view, available);
+    }
+    let area = egui::Area::new(egui::Id::unique("overlay"))
         .fixed_pos(available.min + egui::vec2(MARGIN, MARGIN))
         .default_size(available.size())
         .constrain(false)
@@ -206,6 +252,13 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
                 }
             });
         });
+    if shown.help {
+        help::show(ui, view.labels, &mut changes);
+    }
+    if view.methods.split.is_on {
+        // Where they meet, the divider lies under the panel, though it was used last.
+        ui.ctx().move_to_top(area.response.layer_id);
+    }
     changes
 }
 
@@ -214,7 +267,7 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
     ui.horizontal(|ui| {
         let is_refining = matches!(view.showing, Showing::Refined(samples) if samples < SAMPLES);
         let rate = match view.history.rate() {
-            _ if view.resting && view.tuning.is_measuring() => "measuring".to_owned(),
+            _ if view.resting && (view.tuning.is_measuring() || view.methods.is_measuring()) => "measuring".to_owned(),
             _ if view.resting && is_refining => "refining".to_owned(),
             _ if view.resting => "idle".to_owned(),
             Some(rate) if rate < 9.95 => format!("{rate:.1} fps"),
@@ -227,27 +280,51 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
         ui.label(RichText::new(line).size(15.0).strong().color(theme::STRONG));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let name = if shown.panel { "Hide panel" } else { "Show panel" };
-            if ui.small_button(name).on_hover_text("F1 or Tab; H hides everything").clicked() {
+            if ui.small_button(name).on_hover_text("Tab; H hides everything").clicked() {
                 changes.push(Change::TogglePanel);
+            }
+            if ui.small_button("Help").on_hover_text("F1: keys, settings, how it works").clicked() {
+                changes.push(Change::ToggleHelp);
             }
         });
     });
-    ui.label(RichText::new(view.showing.words(view.settings)).small().color(theme::WEAK))
-        .on_hover_text("what the picture is; see refine-at-rest and target-fps");
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(what_is_seen(view)).small().color(theme::WEAK))
+            .on_hover_text("what the picture is; see refine-at-rest and target-fps");
+        if let Some(activity) = view.activity {
+            ui.label(RichText::new(activity).small().strong().color(theme::WARNING));
+        }
+    });
+}
+
+/// What one is looking at: the map if it is one, the sides, and how the picture was made.
+fn what_is_seen(view: &View<'_>) -> String {
+    let words = view.showing.words(view.left);
+    if view.showing.is_exact() {
+        return words;
+    }
+    let map = match view.methods.map {
+        Map::Picture => String::new(),
+        map => format!("map of {}, ", map.name()),
+    };
+    let sides = if view.methods.split.is_on { "two settings side by side, left " } else { "" };
+    format!("{map}{sides}{words}")
 }
 
 fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     graph::show(ui, view.history);
     section(ui, "Settings", true, |ui| {
+        methods::sides(ui, view, changes);
         presets(ui, view, changes);
         controls::settings(ui, view, changes);
     });
     section(ui, "Last frame", true, |ui| figures::show(ui, view.stats));
+    section(ui, "What the methods do", true, |ui| methods::show(ui, view, changes));
     section(ui, "View", true, |ui| controls::view(ui, view, changes));
     section(ui, "Time against error", false, |ui| tuning::show(ui, view, changes));
     section(ui, "Lights", false, |ui| lights::show(ui, view, changes));
     section(ui, "Scene", false, |ui| scenes::section(ui, view, changes));
-    section(ui, "Keys", false, keys);
+    section(ui, "Keys", false, |ui| help::keys(ui, view.labels));
 }
 
 fn section(ui: &mut Ui, title: &str, open: bool, add_contents: impl FnOnce(&mut Ui)) {
@@ -258,7 +335,7 @@ fn presets(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Preset").color(theme::WEAK));
         for preset in PRESETS {
-            let settings = of_preset(preset, view);
+            let settings = of_preset(preset, view.settings, view.scene);
             let selected = *view.settings == settings;
             if ui.selectable_label(selected, preset.name).on_hover_text(preset.help).clicked() && !selected {
                 changes.push(Change::Settings(settings));
@@ -268,19 +345,8 @@ fn presets(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
 }
 
 /// The settings of a preset, as this scene is drawn by this machine in this window.
-fn of_preset(preset: &Preset, view: &View<'_>) -> Settings {
-    let Settings { threads, simd, refine_at_rest, target_fps, present, .. } = *view.settings;
+fn of_preset(preset: &Preset, current: &Settings, scene: &Scene) -> Settings {
     // The depth "scene" and the scene's own number are the same.
-    let depth = view.settings.depth.filter(|depth| *depth == view.scene.render.max_depth);
-    Settings { threads, simd, refine_at_rest, target_fps, present, depth, ..(preset.settings)() }
-}
-
-fn keys(ui: &mut Ui) {
-    egui::Grid::new("keys").num_columns(2).spacing([16.0, 3.0]).show(ui, |ui| {
-        for (keys, what) in HELP {
-            ui.label(RichText::new(*keys).color(theme::STRONG));
-            ui.label(RichText::new(*what).color(theme::WEAK));
-            ui.end_row();
-        }
-    });
+    let depth = current.depth.filter(|depth| *depth == scene.render.max_depth);
+    Settings { depth, ..(preset.settings)() }.in_place_of(current)
 }

@@ -90,14 +90,10 @@ pub fn show(ui: &Ui, notices: &[Notice]) {
         .interactable(false)
         .show(ui.ctx(), |ui| {
             ui.set_max_width(width);
-            ui.vertical_centered(|ui| {
-                for notice in notices {
-                    let frame = Frame::new().fill(theme::BACKGROUND).inner_margin(8.0).corner_radius(5.0);
-                    frame.show(ui, |ui| {
-                        ui.add(Label::new(RichText::new(&notice.text).color(color(notice.tone))).wrap())
-                    });
-                }
-            });
+            for notice in notices {
+                let frame = Frame::new().fill(theme::BACKGROUND).inner_margin(8.0).corner_radius(5.0);
+                frame.show(ui, |ui| ui.add(Label::new(RichText::new(&notice.text).color(color(notice.tone))).wrap()));
+            }
         });
 }
 

@@ -3,8 +3,9 @@
 use crate::settings::Promise;
 use egui::{Color32, CornerRadius, Stroke};
 
-/// Behind everything. Nearly opaque, so that text stays legible over a bright scene.
-pub const BACKGROUND: Color32 = Color32::from_rgba_premultiplied(15, 17, 22, 232);
+/// Behind everything. Opaque, so that text is legible over any scene, and because what shines through would have to be
+/// mixed anew for every pixel of every frame.
+pub const BACKGROUND: Color32 = Color32::from_rgb(16, 18, 24);
 /// Figures and whatever deserves a look.
 pub const STRONG: Color32 = Color32::from_rgb(236, 240, 247);
 /// Names of figures and controls.
@@ -17,6 +18,17 @@ pub const LINE: Color32 = Color32::from_rgb(52, 58, 70);
 pub const FAILURE: Color32 = Color32::from_rgb(240, 120, 110);
 /// Something to mind.
 pub const WARNING: Color32 = Color32::from_rgb(240, 178, 84);
+
+/// The parts of a bar, in order: viridis from dark to light, so that neighbours differ in lightness.
+pub const PARTS: [Color32; 7] = [
+    Color32::from_rgb(0x6b, 0x2a, 0x86),
+    Color32::from_rgb(0x5d, 0x55, 0xb0),
+    Color32::from_rgb(0x31, 0x68, 0x8e),
+    Color32::from_rgb(0x21, 0x91, 0x8c),
+    Color32::from_rgb(0x35, 0xb7, 0x79),
+    Color32::from_rgb(0x90, 0xd7, 0x43),
+    Color32::from_rgb(0xfd, 0xe7, 0x25),
+];
 
 /// The colour of a promise: the calmer, the nearer to the reference picture.
 pub fn promise_color(promise: Promise) -> Color32 {
@@ -34,7 +46,7 @@ pub fn apply(context: &egui::Context) {
         let visuals = &mut style.visuals;
         visuals.window_shadow = egui::Shadow::NONE;
         visuals.popup_shadow = egui::Shadow::NONE;
-        visuals.window_fill = BACKGROUND.to_opaque();
+        visuals.window_fill = BACKGROUND;
         visuals.panel_fill = BACKGROUND;
         visuals.window_stroke = Stroke::new(1.0, LINE);
         visuals.window_corner_radius = CornerRadius::same(4);

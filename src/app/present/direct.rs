@@ -4,14 +4,13 @@ use super::PaintJob;
 use super::raster::{Raster, over};
 use crate::app::gpu::Gpu;
 use crate::render::Film;
-use egui::TexturesDelta;
+use egui::{Color32, TexturesDelta};
 
 /// The picture on its way to the surface.
 #[derive(Debug)]
 pub struct Direct {
     /// The surface stores blue first.
     swaps: bool,
-    frame: Option<Film>,
     overlay: Raster,
     bytes: Vec<u8>,
 }
@@ -28,12 +27,7 @@ impl Direct {
     }
 
     fn with_order(swaps: bool) -> Self {
-        Self { swaps, frame: None, overlay: Raster::default(), bytes: Vec::new() }
-    }
-
-    /// Takes the frame to show and returns the one before.
-    pub fn set_frame(&mut self, film: Film) -> Option<Film> {
-        self.frame.replace(film)
+        Self { swaps, overlay: Raster::default(), bytes: Vec::new() }
     }
 
     /// Paints the overlay to show.
@@ -43,38 +37,36 @@ impl Direct {
         self.overlay.free_textures(textures);
     }
 
-    /// Joins both at the size of `target` and copies them there.
-    pub fn write(&mut self, queue: &wgpu::Queue, target: &wgpu::Texture) {
+    /// Joins `frame` and the overlay at the size of `target` and copies them there.
+    pub fn write(&mut self, frame: Option<&Film>, queue: &wgpu::Queue, target: &wgpu::Texture) {
         let (width, height) = (target.width(), target.height());
-        self.join(width, height);
+        self.join(frame, width, height);
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
         queue.write_texture(target.as_image_copy(), &self.bytes, layout, target.size());
     }
 
     /// Fills `bytes` in the surface's order; black before the first frame.
-    fn join(&mut self, width: u32, height: u32) {
+    fn join(&mut self, frame: Option<&Film>, width: u32, height: u32) {
         // The order is chosen out here, so that the loops over pixels know it.
         if self.swaps {
-            self.join_ordered(width, height, swapped);
+            self.join_ordered(frame, width, height, swapped);
         } else {
-            self.join_ordered(width, height, |rgba| rgba);
+            self.join_ordered(frame, width, height, |rgba| rgba);
         }
     }
 
-    fn join_ordered(&mut self, width: u32, height: u32, order: impl Fn(Pixel) -> Pixel) {
+    fn join_ordered(&mut self, frame: Option<&Film>, width: u32, height: u32, order: impl Fn(Pixel) -> Pixel) {
         self.bytes.resize(width as usize * height as usize * 4, 0);
         let overlay = self.overlay.used().filter(|_| self.overlay.size() == [width, height]);
         for (y, row) in (0..height).zip(self.bytes.as_chunks_mut().0.chunks_exact_mut(width as usize)) {
-            match &self.frame {
+            match frame {
                 Some(film) => copy_row(row, film, y, height, |[r, g, b, _]| order([r, g, b, 255])),
                 None => row.fill([0; 4]),
             }
             let Some([left, top, covered, rows]) = overlay else { continue };
             if (top..top + rows).contains(&y) {
                 let covered = left as usize..(left + covered) as usize;
-                for (pixel, color) in row[covered.clone()].iter_mut().zip(&self.overlay.row(y)[covered]) {
-                    *pixel = over(order(color.to_array()), *pixel);
-                }
+                lay_row(&mut row[covered.clone()], &self.overlay.row(y)[covered], &order);
             }
         }
     }
@@ -82,6 +74,24 @@ impl Direct {
 
 /// One pixel, four channels with alpha last.
 type Pixel = [u8; 4];
+
+/// Pixels that are looked at together: most of a panel hides all of what is below.
+const RUN: usize = 16;
+
+/// A row of the overlay over one of the picture.
+fn lay_row(row: &mut [Pixel], overlay: &[Color32], order: impl Fn(Pixel) -> Pixel) {
+    for (pixels, colors) in row.chunks_mut(RUN).zip(overlay.chunks(RUN)) {
+        let pairs = pixels.iter_mut().zip(colors.iter().map(|color| color.to_array()));
+        let (all, any) = colors
+            .iter()
+            .fold((u8::MAX, false), |(all, any), color| (all & color.a(), any | (*color != Color32::TRANSPARENT)));
+        match (all, any) {
+            (u8::MAX, _) => pairs.for_each(|(pixel, color)| *pixel = order(color)),
+            (_, false) => {}
+            _ => pairs.for_each(|(pixel, color)| *pixel = over(order(color), *pixel)),
+        }
+    }
+}
 
 /// One row of the picture; a film of another size is stretched, each pixel from the nearest one.
 fn copy_row(row: &mut [Pixel], film: &Film, y: u32, height: u32, order: impl Fn(Pixel) -> Pixel) {
@@ -112,13 +122,13 @@ mod tests {
     use super::*;
     use crate::render::Planes;
     use egui::epaint::{ClippedPrimitive, ImageDelta, Mesh, Primitive, TextureId, textures::TextureOptions};
-    use egui::{Color32, ColorImage, Rect, pos2, vec2};
+    use egui::{ColorImage, Rect, pos2, vec2};
 
     #[test]
     fn frame_and_overlay_are_joined_in_the_surfaces_order() {
         for swaps in [false, true] {
             let mut direct = Direct::with_order(swaps);
-            assert!(direct.set_frame(Film::new(6, 4, Planes::default())).is_none());
+            let film = Film::new(6, 4, Planes::default());
             let mut textures = TexturesDelta::default();
             let white = ColorImage::filled([1, 1], Color32::WHITE);
             textures.push(TextureId::default(), ImageDelta::full(white, TextureOptions::LINEAR));
@@ -128,12 +138,12 @@ mod tests {
             let primitive = ClippedPrimitive { clip_rect: Rect::EVERYTHING, primitive: Primitive::Mesh(mesh) };
             let job = PaintJob { primitives: vec![primitive], size: [6, 4], pixels_per_point: 1.0 };
             direct.set_overlay(&job, &mut textures);
-            direct.join(6, 4);
+            direct.join(Some(&film), 6, 4);
             let pixel = |x: usize, y: usize| &direct.bytes[4 * (6 * y + x)..][..4];
             assert_eq!(pixel(2, 2), if swaps { [10, 20, 200, 255] } else { [200, 20, 10, 255] });
             assert_eq!(pixel(0, 0), [0, 0, 0, 255], "a new film is black");
             assert_eq!(pixel(3, 2), [0, 0, 0, 255]);
-            direct.join(12, 8);
+            direct.join(Some(&film), 12, 8);
             assert_eq!(direct.bytes.len(), 12 * 8 * 4);
             assert_eq!(&direct.bytes[4 * (12 * 2 + 2)..][..4], [0, 0, 0, 255], "an overlay of the old size waits");
         }

@@ -60,8 +60,13 @@ impl PaintJob {
     }
 }
 
-/// One of the two ways, set up.
-pub enum Presenter {
+/// One of the two ways, set up, and the frame it shows.
+pub struct Presenter {
+    way: Way,
+    frame: Option<Film>,
+}
+
+enum Way {
     /// Textures joined by a shader.
     Blit(Box<(Blit, GpuOverlay)>),
     /// Memory joined by the CPU.
@@ -77,45 +82,47 @@ impl Presenter {
             Present::Direct => true,
         };
         if direct && let Some(direct) = Direct::new(gpu) {
-            return Self::Direct(Box::new(direct));
+            return Self { way: Way::Direct(Box::new(direct)), frame: None };
         }
         let blit = Blit::new(&gpu.device, gpu.format());
-        Self::Blit(Box::new((blit, GpuOverlay::new(gpu))))
+        Self { way: Way::Blit(Box::new((blit, GpuOverlay::new(gpu)))), frame: None }
     }
 
-    /// Shows `film` from the next drawing on. Returns a film that is not needed any more.
+    /// The frame on display, without the overlay.
+    pub fn frame(&self) -> Option<&Film> {
+        self.frame.as_ref()
+    }
+
+    /// Shows `film` from the next drawing on. Returns the film that was shown before.
     pub fn set_frame(&mut self, gpu: &Gpu, film: Film) -> Option<Film> {
-        match self {
-            Self::Blit(both) => {
-                both.0.upload(&gpu.device, &gpu.queue, film.width(), film.height(), film.rgba());
-                Some(film)
-            }
-            Self::Direct(direct) => direct.set_frame(film),
+        if let Way::Blit(both) = &mut self.way {
+            both.0.upload(&gpu.device, &gpu.queue, film.width(), film.height(), film.rgba());
         }
+        self.frame.replace(film)
     }
 
     /// Shows the overlay `job` from the next drawing on.
     pub fn set_overlay(&mut self, gpu: &Gpu, job: &PaintJob, mut textures: egui::TexturesDelta) {
-        match self {
-            Self::Blit(both) => {
+        match &mut self.way {
+            Way::Blit(both) => {
                 let (blit, overlay) = both.as_mut();
                 overlay.paint(gpu, blit, job, &mut textures);
             }
-            Self::Direct(direct) => direct.set_overlay(job, &mut textures),
+            Way::Direct(direct) => direct.set_overlay(job, &mut textures),
         }
     }
 
     /// Draws and presents.
     pub fn show(&mut self, gpu: &Gpu, target: wgpu::SurfaceTexture) {
-        match self {
-            Self::Blit(both) => {
+        match &mut self.way {
+            Way::Blit(both) => {
                 let (blit, overlay) = both.as_ref();
                 let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
                 blit.draw(&mut encoder, &target.texture, overlay.picture(gpu.size()));
                 gpu.present(Some(encoder.finish()), target);
             }
-            Self::Direct(direct) => {
-                direct.write(&gpu.queue, &target.texture);
+            Way::Direct(direct) => {
+                direct.write(self.frame.as_ref(), &gpu.queue, &target.texture);
                 gpu.present(None, target);
             }
         }

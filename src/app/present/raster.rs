@@ -5,7 +5,7 @@
 
 use super::{PaintJob, PixelRect};
 use egui::epaint::{ImageDelta, Mesh, Primitive, TextureId, Vertex};
-use egui::{Color32, ColorImage, ImageData, Pos2, TexturesDelta};
+use egui::{Color32, ColorImage, ImageData, Pos2, Rect, TexturesDelta};
 use std::collections::HashMap;
 
 /// A picture of premultiplied sRGB-encoded colours, and the textures that are painted with.
@@ -120,6 +120,35 @@ impl Varying {
     }
 }
 
+/// An upright rectangle of one colour with a part of the texture, upright as well.
+struct Glyph {
+    place: Rect,
+    uv: Rect,
+    color: Color32,
+}
+
+impl Glyph {
+    /// What the first two triangles of `indices` are, if they are one, as egui makes them: left to right, then down.
+    fn first_of(mesh: &Mesh, indices: &[u32]) -> Option<Self> {
+        let &[a, b, c, second_c, second_b, d] = indices.first_chunk::<6>()?;
+        if (second_b, second_c) != (b, c) {
+            return None;
+        }
+        let corner = |i: u32| mesh.vertices.get(i as usize);
+        let (a, b, c, d) = (corner(a)?, corner(b)?, corner(c)?, corner(d)?);
+        let is_upright = |a: Pos2, b: Pos2, c: Pos2, d: Pos2| {
+            a.y == b.y && c.y == d.y && a.x == c.x && b.x == d.x && a.x < b.x && a.y < c.y
+        };
+        let is_one_color = [b, c, d].iter().all(|vertex| vertex.color == a.color);
+        let is_one = is_one_color && is_upright(a.pos, b.pos, c.pos, d.pos) && is_upright(a.uv, b.uv, c.uv, d.uv);
+        is_one.then(|| Self {
+            place: Rect::from_min_max(a.pos, d.pos),
+            uv: Rect::from_min_max(a.uv, d.uv),
+            color: a.color,
+        })
+    }
+}
+
 /// Pixels being painted, within a clip rectangle.
 struct Target<'a> {
     pixels: &'a mut [Color32],
@@ -129,10 +158,41 @@ struct Target<'a> {
 
 impl Target<'_> {
     fn mesh(&mut self, mesh: &Mesh, texture: &ColorImage, scale: f32) {
-        for corners in mesh.indices.chunks_exact(3) {
-            let corners = [corners[0], corners[1], corners[2]].map(|i| mesh.vertices.get(i as usize));
+        let mut indices = mesh.indices.as_slice();
+        while let [a, b, c, rest @ ..] = indices {
+            if let Some(glyph) = Glyph::first_of(mesh, indices) {
+                self.glyph(&glyph, texture, scale);
+                indices = &indices[6..];
+                continue;
+            }
+            let corners = [a, b, c].map(|&i| mesh.vertices.get(i as usize));
             if let [Some(a), Some(b), Some(c)] = corners {
                 self.triangle([*a, *b, *c], texture, scale);
+            }
+            indices = rest;
+        }
+    }
+
+    /// Lays texels of one colour row by row: most of what is painted, and most of that is nothing.
+    fn glyph(&mut self, glyph: &Glyph, texture: &ColorImage, scale: f32) {
+        let [left, top, width, height] = self.clip;
+        let (place, uv) = (glyph.place * scale, glyph.uv);
+        let [texture_width, texture_height] = texture.size;
+        let step = |uv: f32, texels: usize, points: f32| uv * texels as f32 / points;
+        let (du, dv) =
+            (step(uv.width(), texture_width, place.width()), step(uv.height(), texture_height, place.height()));
+        let texel = |from: f32, texels: usize, step: f32, at: f32| nearest(from * texels as f32 + step * at, texels);
+        let span = columns(place.left(), place.right(), left, left + width);
+        for row in columns(place.top(), place.bottom(), top, top + height) {
+            let v = texel(uv.top(), texture_height, dv, row as f32 + 0.5 - place.top());
+            let Some(texels) = texture.pixels.get(v * texture_width..(v + 1) * texture_width) else { return };
+            let pixels = &mut self.pixels[row as usize * self.stride..][span.start as usize..span.end as usize];
+            for (x, pixel) in span.clone().zip(pixels) {
+                let u = texel(uv.left(), texture_width, du, x as f32 + 0.5 - place.left());
+                match texels.get(u) {
+                    None | Some(&Color32::TRANSPARENT) => {}
+                    Some(&texel) => lay(tinted(glyph.color, texel), pixel),
+                }
             }
         }
     }
@@ -195,11 +255,22 @@ fn columns(from: f32, to: f32, least: u32, end: u32) -> std::ops::Range<u32> {
 /// Colour times texel. Glyphs are drawn at the size they were rasterised in, so the nearest texel is the right one.
 fn shade(varying: Varying, texture: &ColorImage) -> Color32 {
     let [width, height] = texture.size;
-    let nearest = |t: f32, size: usize| (t.max(0.0) as usize).min(size.saturating_sub(1));
     let index = nearest(varying.uv[1], height) * width + nearest(varying.uv[0], width);
     let texel = texture.pixels.get(index).copied().unwrap_or(Color32::WHITE).to_array();
     let [r, g, b, a]: [u8; 4] = std::array::from_fn(|i| (varying.color[i] * f32::from(texel[i]) / 255.0 + 0.5) as u8);
     Color32::from_rgba_premultiplied(r, g, b, a)
+}
+
+/// The texel that a coordinate in texels lies in.
+fn nearest(at: f32, texels: usize) -> usize {
+    (at.max(0.0) as usize).min(texels.saturating_sub(1))
+}
+
+/// One colour times a texel.
+fn tinted(color: Color32, texel: Color32) -> Color32 {
+    let times = |a: u8, b: u8| ((2 * u32::from(a) * u32::from(b) + 255) / 510) as u8;
+    let ([r, g, b, a], [s, t, u, v]) = (color.to_array(), texel.to_array());
+    Color32::from_rgba_premultiplied(times(r, s), times(g, t), times(b, u), times(a, v))
 }
 
 fn lay(color: Color32, pixel: &mut Color32) {
@@ -229,7 +300,7 @@ pub fn over(color: [u8; 4], below: [u8; 4]) -> [u8; 4] {
 mod tests {
     use super::*;
     use egui::epaint::{ClippedPrimitive, textures::TextureOptions};
-    use egui::{Rect, pos2};
+    use egui::pos2;
 
     const FONT: TextureId = TextureId::Managed(0);
 
@@ -305,6 +376,35 @@ mod tests {
         assert_eq!(raster.row(4)[4], Color32::from_rgb(128, 100, 0));
         assert_eq!(raster.row(3)[3], Color32::WHITE);
         assert_eq!(raster.row(7)[3], Color32::from_rgb(0, 200, 0));
+    }
+
+    #[test]
+    fn glyphs_are_what_their_triangles_are() {
+        let raster_of = |mesh: Mesh, clip: Rect| {
+            let mut raster = raster();
+            raster.paint(&job(vec![mesh], clip));
+            (0..12).flat_map(|y| raster.row(y).to_vec()).collect::<Vec<_>>()
+        };
+        let clips = [Rect::EVERYTHING, rect(3.0, 2.0, 9.0, 7.0)];
+        let mut random = crate::math::random::SplitMix64(7);
+        for i in 0..200 {
+            let mut at = |least: f64, most: f64| random.within(least, most) as f32;
+            let (x, y) = (at(-3.0, 12.0), at(-3.0, 9.0));
+            let place = rect(x, y, x + at(0.1, 9.0), y + at(0.1, 9.0));
+            let (u, v) = (at(0.0, 0.7), at(0.0, 0.7));
+            let uv = rect(u, v, u + at(0.01, 0.3), v + at(0.01, 0.3));
+            let mut glyph = Mesh::with_texture(FONT);
+            glyph.add_rect_with_uv(place, uv, Color32::from_rgba_premultiplied(90, 60, 30, 120));
+            assert!(Glyph::first_of(&glyph, &glyph.indices).is_some());
+            let mut triangles = glyph.clone();
+            triangles.indices = [1, 2, 0, 1, 3, 2].into();
+            assert!(Glyph::first_of(&triangles, &triangles.indices).is_none());
+            let clip = clips[i % 2];
+            let (glyph, triangles) = (raster_of(glyph, clip), raster_of(triangles, clip));
+            // Where a pixel's centre lies on the border of two texels, rounding decides.
+            let differing = glyph.iter().zip(&triangles).filter(|(a, b)| a != b).count();
+            assert!(differing <= 2, "{differing} pixels of {place:?}");
+        }
     }
 
     #[test]

@@ -289,6 +289,11 @@ impl Scenes {
         }
     }
 
+    /// The file of the scene that is shown; `None` for the built-in one.
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
     /// The files that were opened last.
     pub fn recent(&self) -> &RecentFiles {
         &self.recent

@@ -38,7 +38,7 @@ const MAX_PITCH: f64 = 89.0;
 /// Vertical fields of view that can be set, in degrees.
 pub const FOV_RANGE: std::ops::RangeInclusive<f32> = 20.0..=120.0;
 /// Degrees of turn per count of the mouse, as it starts.
-const SENSITIVITY: f64 = 0.12;
+pub const SENSITIVITY: f64 = 0.12;
 
 /// Degrees and a place: what movement changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +65,7 @@ pub struct Walker {
     /// Mouse forward looks down.
     pub invert_look: bool,
     home: Camera,
+    surroundings: f64,
     /// The camera last gone to. Until the walker moves from it, it stays what it is, bit for bit.
     stance: Camera,
     moved: bool,
@@ -90,6 +91,7 @@ impl Walker {
             sensitivity: SENSITIVITY,
             invert_look: false,
             home,
+            surroundings,
             stance: home,
             moved: false,
             upright,
@@ -132,9 +134,7 @@ impl Walker {
 
     /// Goes to `camera` and takes its field of view. Speed stays. On foot, one falls from there at the next step only.
     pub fn go_to(&mut self, camera: Camera) {
-        if let Way::Walk(gait) = &mut self.way {
-            *gait = None;
-        }
+        self.lose_footing();
         (self.upright, self.pose) = stand(&camera);
         self.fov = camera.fov;
         self.stance = camera;
@@ -220,6 +220,11 @@ impl Walker {
         }
     }
 
+    /// Size of what is around the start, in metres.
+    pub fn surroundings(&self) -> f64 {
+        self.surroundings
+    }
+
     /// Whether the walker is on their feet.
     pub fn is_walking(&self) -> bool {
         matches!(self.way, Way::Walk(_))
@@ -239,8 +244,8 @@ impl Walker {
         self.land(geometry)
     }
 
-    /// Takes another scene, the same or not: whoever walks looks for the floor anew.
-    pub fn enter_scene(&mut self) {
+    /// What surrounds the walker has changed: on foot, they look for the floor anew when they next move.
+    pub fn lose_footing(&mut self) {
         if let Way::Walk(gait) = &mut self.way {
             *gait = None;
         }

@@ -327,6 +327,21 @@ fn another_eye_height_is_taken_where_it_fits() {
 }
 
 #[test]
+fn a_scene_that_changes_around_a_walker_does_not_hold_them() {
+    let before = place([floor()]);
+    let after = place(cuboid(Vec3::new(-9.0, 0.0, -0.1), Vec3::new(9.0, 3.0, 0.1)).into_iter().chain([floor()]));
+    let mut walker = someone(&before, Vec3::new(0.0, 1.6, 0.0), 0.0);
+    go(&mut walker, &before, STAND, 0.5, 60.0);
+    walker.lose_footing();
+    let stood = walker.camera();
+    go(&mut walker, &after, STAND, 0.5, 60.0);
+    assert_eq!(walker.camera(), stood, "the view is kept");
+    assert!(!walker.advance(&after, FORWARD, 0.01) && !walker.is_walking(), "within a wall there is no room");
+    go(&mut walker, &after, FORWARD, 0.5, 60.0);
+    assert!(eye(&walker).z < -0.5);
+}
+
+#[test]
 fn home_is_home_on_foot_too() {
     let ground = place([floor()]);
     let mut walker = someone(&ground, Vec3::new(0.0, 5.0, 0.0), 0.0);

@@ -197,7 +197,7 @@ fn trace_rays<S: Simd>(
     worker: &mut Worker,
 ) {
     let &LightRays { light, queue, search } = rays;
-    let Worker { shadow_scratch, stack, color, trails, stats, .. } = worker;
+    let Worker { shadow_scratch, stack, color, trails, stats, ledger, .. } = worker;
     let last_blocker = &mut shadow_scratch.last_blocker[light];
     simd.vectorize(
         #[inline(always)]
@@ -224,6 +224,9 @@ fn trace_rays<S: Simd>(
                     occluders.listed = Some((candidates, points));
                 }
                 stats.rays.shadow += u64::from(present.count_ones());
+                if frame.keeps_costs {
+                    ledger.add_lanes(&queue.sample[lanes.clone()], present);
+                }
                 if frame.settings.shadow_cache && suspects.is_none() && *last_blocker != NO_PRIMITIVE {
                     search.test_one(simd, *last_blocker, &Rays::new(origin, direction), &mut visitor);
                     count_cache(&mut stats.shadow_cache, present, visitor.blocked.to_bitmask());

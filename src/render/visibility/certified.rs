@@ -41,7 +41,7 @@ pub(super) fn find<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, worker: &mu
     let start = Instant::now();
     queue_tile(simd, frame, pass, worker);
     worker.rays.pad();
-    worker.certain_cells = 0;
+    (worker.certain_cells, worker.traced_cells) = (0, 0);
     worker.stats.stages_ms.visibility += milliseconds_since(start);
     let mut levels = worker.levels.take().unwrap_or_default();
     for block in 0..worker.order.blocks.len() {
@@ -131,6 +131,7 @@ fn find_quarter<S: Simd>(
         if !known {
             trace::primary_range(simd, frame, area.start..area.start + area.pixels(), worker);
             worker.stats.pixels.traced += area.pixels() as u64;
+            worker.traced_cells |= 1 << at;
         } else {
             resolve_area(simd, frame, &search, cell, area, at..at + 1, worker);
         }

@@ -4,7 +4,7 @@
 //! Cells lie on the grid of the tile's samples: from 4 x 4 on their pixels follow each other, and are filled a packet at
 //! a time. Those of a level are kept in that order too, so that the rays through their corners make coherent packets.
 
-use super::{Pass, Worker, queue_tile, shade_queue, trace_pixels};
+use super::{Order, Pass, Worker, queue_tile, shade_queue, trace_pixels};
 use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex};
 use crate::math::V3;
 use crate::render::film::TILE;
@@ -113,6 +113,7 @@ impl Cells {
     fn begin(&mut self, pass: &Pass, stride: u16) {
         self.listed.clear();
         self.listed.resize(SAMPLES, false);
+        self.missing.clear();
         let Level { size, cells, width, height, last } = &mut self.level;
         (*width, *height) = (pass.width as u16, pass.height as u16);
         *last = [*width - u16::from(!pass.continues_right), *height - u16::from(!pass.continues_down)];
@@ -125,6 +126,16 @@ impl Cells {
             self.refused.extend_from_slice(&self.level.cells);
             self.split();
         }
+    }
+
+    /// Whether a ray was traced for a sample before anything was filled in.
+    pub fn is_listed(&self, sample: usize) -> bool {
+        self.listed[sample]
+    }
+
+    /// The samples of pixels that a ray was traced for since they miss what they were taken to see.
+    pub fn traced_anew<'a>(&'a self, order: &'a Order) -> impl Iterator<Item = u32> + 'a {
+        self.missing.iter().map(|&place| order.samples[place as usize])
     }
 
     /// Goes on to the cells of half the size, which are those that were refused cut in four.
@@ -350,7 +361,6 @@ fn fill_hits<S: Simd>(simd: S, frame: &Frame<'_>, pass: &Pass, cells: &mut Cells
         worker.rays.t[at] = cells.t[sample as usize];
     }
     worker.rays.clear_padding();
-    cells.missing.clear();
     trace::test_pending(simd, frame, &mut worker.rays, &mut cells.missing);
     trace::retrace(simd, frame, &cells.missing, worker);
     traced += cells.missing.len() as u64;

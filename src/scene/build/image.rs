@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::io::Cursor;
+use std::ops::Deref;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -45,10 +46,27 @@ enum Key {
     Embedded(usize, Encoding),
 }
 
+/// The bytes of an image as they are stored.
+enum Encoded {
+    File(Cow<'static, [u8]>),
+    Embedded(Arc<[u8]>),
+}
+
+impl Deref for Encoded {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::File(bytes) => bytes,
+            Self::Embedded(bytes) => bytes,
+        }
+    }
+}
+
 /// An image that waits to be decoded.
 struct Waiting {
     key: Key,
-    bytes: Cow<'static, [u8]>,
+    bytes: Encoded,
     /// The image that holds its opacity.
     opacity: Option<Cow<'static, [u8]>>,
     encoding: Encoding,
@@ -106,7 +124,7 @@ impl ImageStore {
                 if self.is_known(&key, waiting) {
                     return Ok(key);
                 }
-                (key, self.files.read(&path)?, None)
+                (key, Encoded::File(self.files.read(&path)?), None)
             }
             ImageSource::Masked { name, opacity } => {
                 let (path, mask) = (self.files.locate(&name.name)?, self.files.locate(&opacity.name)?);
@@ -114,7 +132,7 @@ impl ImageStore {
                 if self.is_known(&key, waiting) {
                     return Ok(key);
                 }
-                (key, self.files.read(&path)?, Some(self.files.read(&mask)?))
+                (key, Encoded::File(self.files.read(&path)?), Some(self.files.read(&mask)?))
             }
             ImageSource::Embedded { bytes, .. } => {
                 let key = Key::Embedded(bytes.as_ptr() as usize, encoding);
@@ -122,7 +140,7 @@ impl ImageStore {
                     return Ok(key);
                 }
                 self.embedded.push(Arc::clone(bytes));
-                (key, Cow::Owned(bytes.to_vec()), None)
+                (key, Encoded::Embedded(Arc::clone(bytes)), None)
             }
         };
         waiting.keys.insert(key.clone());

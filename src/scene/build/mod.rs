@@ -202,6 +202,7 @@ impl SceneBuilder {
         let headlight = self.lights.is_empty();
         if headlight {
             self.render.ambient = Vec3::splat(AMBIENT_SHARE);
+            self.materials.iter_mut().filter(|material| material.is_stand_in).for_each(Material::take_metal);
         }
         if self.materials.is_empty() {
             self.materials.push(Material::default_phong());

@@ -6,13 +6,14 @@
 
 use super::place::{by_line, byte_offset, line_column};
 use super::{Input, settle};
+use crate::scene::Camera;
 use crate::scene::build::SceneBuilder;
-use crate::scene::desc::map::shortened;
+use crate::scene::desc::map::{Map, shortened};
 use crate::scene::desc::node::{Field, Kind, Node};
 use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
 use crate::scene::desc::{self, Context};
 use crate::scene::error::{Place, SceneError};
-use crate::scene::limits::exceeded;
+use crate::scene::limits::{Limits, exceeded};
 use serde::de::{DeserializeOwned, Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
@@ -28,6 +29,26 @@ pub fn read(input: &Input, builder: &mut SceneBuilder) -> Result<(), SceneError>
     let mut context = Context { limits: builder.limits(), warnings: Warnings::default() };
     let described = desc::read(document.root(), &mut context);
     settle(described, context.warnings, builder, |positions| document.places(positions))
+}
+
+/// Reads a camera from a text that `name` stands for in errors: a camera alone, or something with a `camera` in it, such
+/// as a scene.
+///
+/// # Errors
+/// The text is no JSON, or what it holds is no camera; with line, column and pointer.
+pub fn read_camera(name: &str, text: &str) -> Result<Camera, SceneError> {
+    let limits = Limits::default();
+    let document = Document::parse(Path::new(name), text.as_bytes(), limits.nesting)?;
+    let mut context = Context { limits: &limits, warnings: Warnings::default() };
+    let mut read = || {
+        let node = Map::open(document.root())?.take("camera").unwrap_or(document.root());
+        desc::camera::read(node, String::new(), &mut context)
+    };
+    let named = read().map_err(|problem| {
+        let place = document.places(&[problem.at]).remove(0);
+        SceneError::Invalid { place, message: problem.message }
+    })?;
+    Ok(named.camera)
 }
 
 /// Reads a text whose structure serde knows, for the format of that name; errors have their line, column and pointer.

@@ -9,6 +9,8 @@ mod polygon;
 mod words;
 mod xml;
 
+pub use json::read_camera;
+
 use super::build::SceneBuilder;
 use super::desc::SceneDesc;
 use super::desc::problem::{At, Outcome, Warnings};

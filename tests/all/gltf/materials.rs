@@ -33,6 +33,27 @@ fn factors_become_the_materials_own() {
 }
 
 #[test]
+fn a_surface_without_a_material_is_metal_where_there_is_light_to_show_its_shape() {
+    let metal = |rest: &str| {
+        let mut file = File::default();
+        let positions = file.vectors(&CORNERS);
+        let mesh = format!(r#""meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": {positions} }} }}] }}]"#);
+        let scene = file.load(&format!("{mesh}, {rest}"));
+        let object = &scene.objects[0];
+        let Model::MetallicRoughness { metallic, roughness, .. } = scene.materials[object.material as usize].model
+        else {
+            panic!("{:?}", scene.materials)
+        };
+        assert_eq!(roughness, 1.0);
+        (scene.headlight, metallic)
+    };
+    assert_eq!(metal(r#""nodes": [{ "mesh": 0 }]"#), (true, 0.0));
+    let lit = r#""extensions": { "KHR_lights_punctual": { "lights": [{ "type": "directional" }] } },
+        "nodes": [{ "mesh": 0 }, { "extensions": { "KHR_lights_punctual": { "light": 0 } } }]"#;
+    assert_eq!(metal(lit), (false, 1.0));
+}
+
+#[test]
 fn extensions_change_what_they_name() {
     let m = material(
         r#"{ "extensions": { "KHR_materials_transmission": { "transmissionFactor": 0.5 }, "KHR_materials_ior": { "ior": 1.25 },

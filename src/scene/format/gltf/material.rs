@@ -34,9 +34,9 @@ pub fn materials(document: &Document, textures: &mut Textures, report: &mut Repo
     }
     materials.push(MaterialDesc {
         name: unique(Some(DEFAULT), materials.len(), &mut names),
-        // The specification says metal, which shows no shape when it is rough and the only light is at the eye.
-        model: model(0.0, 1.0),
+        model: model(1.0, 1.0),
         thin: true,
+        is_stand_in: true,
         ..MaterialDesc::default_phong()
     });
     Ok(materials)

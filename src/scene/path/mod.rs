@@ -9,12 +9,17 @@
 //! Frame `i` is taken at the first key's time plus `i / fps`; after the last key the camera stands still. Position,
 //! target and field of view each follow a cubic Hermite spline whose tangents are the three-point differences of
 //! their neighbours (Catmull-Rom for keys evenly spaced in time). A key without `fov` takes that of the camera which
-//! the walk starts from; its `up`, near and far limits hold for the whole path.
+//! the walk starts from; its near and far limits hold for the whole path, and so does its `up`, unless the path gives
+//! one (`"up": [0, 1, 0]`) beside `fps`.
+
+mod fit;
+
+pub use fit::{Sample, Tolerance};
 
 use super::error::{Place, SceneError};
 use super::{Camera, Warning};
 use glam::DVec3;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -26,17 +31,20 @@ const MAX_BYTES: u64 = 16 << 20;
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraPath {
     fps: f64,
+    /// What is up all along; else that of the camera which the walk starts from.
+    up: Option<[f64; 3]>,
     /// At least one, in strictly ascending order of time.
     keys: Vec<Key>,
 }
 
 /// Where the camera is at one moment.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Key {
     t: f64,
     position: [f64; 3],
     look_at: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
     fov: Option<f64>,
 }
 
@@ -49,6 +57,7 @@ struct PathFile {
     _comment: serde::de::IgnoredAny,
     #[serde(default = "default_fps")]
     fps: f64,
+    up: Option<[f64; 3]>,
     keys: Vec<Key>,
 }
 
@@ -99,6 +108,9 @@ impl CameraPath {
         if !(path.fps > 0.0 && path.fps <= 10_000.0) {
             return wrong("/fps".into(), "expected frames per second above 0, at most 10000");
         }
+        if path.up.is_some_and(|up| !DVec3::from(up).as_vec3().is_finite() || up == [0.0; 3]) {
+            return wrong("/up".into(), "expected a direction, not all zeros");
+        }
         if path.keys.is_empty() {
             return wrong("/keys".into(), "expected at least one key");
         }
@@ -114,23 +126,46 @@ impl CameraPath {
                 return wrong(format!("/keys/{i}/t"), "expected a time after that of the key before");
             }
         }
-        Ok(Self { fps: path.fps, keys: path.keys })
+        Ok(Self { fps: path.fps, up: path.up, keys: path.keys })
+    }
+
+    /// The path as a JSON file, a key a line.
+    pub fn to_json(&self) -> String {
+        // Numbers and lists can always be written.
+        let up = self.up.and_then(|up| serde_json::to_string(&up).ok());
+        let up = up.map_or_else(String::new, |up| format!(" \"up\": {up},"));
+        let lines = self.keys.iter().filter_map(|key| serde_json::to_string(key).ok());
+        let keys: Vec<String> = lines.map(|line| format!("    {line}")).collect();
+        format!("{{ \"version\": 1, \"fps\": {},{up}\n  \"keys\": [\n{}\n  ] }}\n", self.fps, keys.join(",\n"))
+    }
+
+    /// Seconds from the first key to the last.
+    pub fn duration(&self) -> f64 {
+        self.keys[self.keys.len() - 1].t - self.keys[0].t
     }
 
     /// Frames from the first key to the last, both included.
     pub fn frame_count(&self) -> u64 {
-        let duration = self.keys[self.keys.len() - 1].t - self.keys[0].t;
         // A duration of whole frames must not lose its last one to rounding.
-        (duration * self.fps + 1e-6) as u64 + 1
+        (self.duration() * self.fps + 1e-6) as u64 + 1
     }
 
     /// The camera of frame `frame`; what a key does not say is taken from `base`.
     pub fn camera(&self, frame: u64, base: &Camera) -> Camera {
-        let t = self.keys[0].t + frame as f64 / self.fps;
+        self.camera_at(self.keys[0].t + frame as f64 / self.fps, base)
+    }
+
+    /// The camera `seconds` after the first key.
+    pub fn camera_after(&self, seconds: f64, base: &Camera) -> Camera {
+        self.camera_at(self.keys[0].t + seconds, base)
+    }
+
+    fn camera_at(&self, t: f64, base: &Camera) -> Camera {
         let fov = |key: &Key| DVec3::splat(key.fov.unwrap_or(f64::from(base.fov)));
         Camera {
             eye: self.at(t, |key| key.position.into()).as_vec3(),
             look_at: self.at(t, |key| key.look_at.into()).as_vec3(),
+            up: self.up.map_or(base.up, |up| DVec3::from(up).as_vec3()),
             // A spline may swing beyond its keys; a field of view may not leave its range.
             fov: (self.at(t, fov).x as f32).clamp(0.01, 179.99),
             ..*base
@@ -247,6 +282,7 @@ mod tests {
             ("{ \"version\": 1,\n \"kyes\": [] }".to_owned(), "walk.json:2:"),
             (r#"{ "version": 2, "keys": [] }"#.to_owned(), "/version"),
             (r#"{ "version": 1, "keys": [] }"#.to_owned(), "/keys"),
+            (format!(r#"{{ "version": 1, "up": [0, 0, 0], "keys": [{}] }}"#, key("0")), "/up"),
             (format!(r#"{{ "version": 1, "fps": 0, "keys": [{}] }}"#, key("0")), "/fps"),
             (format!(r#"{{ "version": 1, "keys": [{}, {}] }}"#, key("1"), key("1")), "/keys/1/t"),
             (format!(r#"{{ "version": 1, "keys": [{}] }}"#, key("1e39")), "/keys/0"),

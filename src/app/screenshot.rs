@@ -1,0 +1,303 @@
+//! Screenshots: the picture on display as a PNG that says how to make it again.
+
+use super::at_rest::SAMPLES;
+use super::errands::{Errand, News};
+use super::maps::Map;
+use super::tracer::Job;
+use crate::picture::{EightBit, Note, NumberedName, PendingFile, write_annotated};
+use crate::render::Film;
+use crate::scene::{Camera, NamedCamera};
+use crate::settings::{ROWS, Row, Settings, Supersample};
+use glam::Vec3;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Where screenshots go unless something else is asked for.
+pub const USUAL_NAME: &str = "raywalk-%04d.png";
+/// Most pictures of one name.
+const MOST: u64 = 999_999;
+
+/// The name that was asked for, if screenshots can have it.
+///
+/// # Errors
+/// What a name needs.
+pub fn name(asked: &Path) -> Result<NumberedName, String> {
+    let name = NumberedName::new(asked);
+    let is_png = asked.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    if is_png && name.has_number() { Ok(name) } else { Err(format!("expected a name such as {USUAL_NAME}")) }
+}
+
+/// A picture on display, and what made it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shot {
+    picture: EightBit,
+    job: Job,
+    samples: Option<u32>,
+}
+
+impl Shot {
+    /// Of `film`, traced for `job`; `samples` a pixel where it was refined at rest.
+    pub fn new(film: &Film, job: &Job, samples: Option<u32>) -> Self {
+        Self { picture: EightBit::of_film(film), job: job.clone(), samples }
+    }
+
+    /// Whether flags can make the same picture: there are none for a part of the samples.
+    fn is_final(&self) -> bool {
+        self.samples.is_none_or(|samples| samples == SAMPLES)
+    }
+
+    /// The settings that make this picture, or for one that is being refined what it comes to.
+    fn settings(&self) -> Settings {
+        let settings = self.job.settings.clone();
+        match self.samples {
+            None => settings,
+            Some(_) => {
+                let supersample = Supersample::Grid { side: Supersample::REFINED_SIDE };
+                Settings { supersample, render_scale: 1.0, ..settings }
+            }
+        }
+    }
+}
+
+/// Screenshots that wait for the last of their samples: what is taken of a view at rest is what it comes to.
+#[derive(Debug, Default)]
+pub struct Camerawork {
+    waiting: Option<Shot>,
+}
+
+impl Camerawork {
+    /// A screenshot was asked for: returns it if it can be written, or lets it wait until its view is refined.
+    pub fn ask(&mut self, shot: Shot) -> Option<Shot> {
+        if shot.is_final() {
+            return Some(shot);
+        }
+        self.waiting = Some(shot);
+        None
+    }
+
+    /// Whether one waits.
+    pub fn is_waiting(&self) -> bool {
+        self.waiting.is_some()
+    }
+
+    /// A frame came while one waited. Returns what is to be written: the refined picture, or, where the view was left,
+    /// what was seen.
+    pub fn frame(&mut self, film: &Film, job: &Job, samples: Option<u32>) -> Option<Shot> {
+        let waiting = self.waiting.take()?;
+        if waiting.job != *job || samples.is_none() {
+            return Some(waiting);
+        }
+        if samples == Some(SAMPLES) {
+            return Some(Shot::new(film, job, samples));
+        }
+        self.waiting = Some(waiting);
+        None
+    }
+
+    /// The one that waits, as it is.
+    pub fn give_up(&mut self) -> Option<Shot> {
+        self.waiting.take()
+    }
+}
+
+/// What else is told of a picture.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// The scene's file as it was opened; `None` for the built-in scene.
+    pub file: Option<PathBuf>,
+    /// The scene's cameras.
+    pub cameras: Vec<NamedCamera>,
+}
+
+/// What writes `shot` under the first free name.
+pub fn errand(shot: Shot, place: Place, name: NumberedName) -> Errand {
+    Box::new(move || {
+        let notes = notes(&shot, &place);
+        let write = |pending: PendingFile| {
+            pending.commit_to_free((1..=MOST).map(|number| name.of(number)), |sink| {
+                write_annotated(&shot.picture, &notes, sink)
+            })
+        };
+        // Its first name is only where it is: a file of that name is no obstacle, even if it cannot be written.
+        Some(match PendingFile::beside(&name.of(1)).and_then(write) {
+            Ok(path) => {
+                let path = std::path::absolute(&path).unwrap_or(path);
+                News::Done(format!("screenshot: {}", path.display()))
+            }
+            Err(error) => News::Problem(format!("no screenshot: {error}")),
+        })
+    })
+}
+
+/// What is written into the file.
+fn notes(shot: &Shot, place: &Place) -> Vec<Note> {
+    let settings = shot.settings();
+    let Camera { eye, look_at, up, fov, near, far } = shot.job.camera;
+    let mut camera =
+        json!({ "position": eye.to_array(), "look_at": look_at.to_array(), "up": up.to_array(), "fov": fov });
+    if near > 0.0 {
+        camera["near"] = json!(near);
+    }
+    if far.is_finite() {
+        camera["far"] = json!(far);
+    }
+    let values: serde_json::Map<_, _> =
+        picture_rows().map(|row| (row.name.to_owned(), (row.get)(&settings).into())).collect();
+    let scene = place.file.as_ref().map_or_else(|| "built-in".to_owned(), |file| file.display().to_string());
+    let mut notes = vec![
+        ("Software", format!("raywalk {}", env!("CARGO_PKG_VERSION"))),
+        ("raywalk:command", command(shot, place, &settings)),
+        ("raywalk:scene", scene),
+        ("raywalk:camera", camera.to_string()),
+        ("raywalk:settings", serde_json::Value::Object(values).to_string()),
+    ];
+    if let Some(beside) = &shot.job.aspect.beside {
+        notes.push(("raywalk:beside", format!("right of the divider: {}", beside.flags())));
+    }
+    if let Some(samples) = shot.samples.filter(|_| !shot.is_final()) {
+        notes.push((
+            "raywalk:samples",
+            format!("{samples} of {SAMPLES}: the command makes the picture with all of them"),
+        ));
+    }
+    notes
+}
+
+/// The rows that a picture may depend on.
+fn picture_rows() -> impl Iterator<Item = &'static Row> {
+    let of_this_machine = ["threads", "simd", "refine-at-rest", "target-fps", "present"];
+    ROWS.iter().filter(move |row| !of_this_machine.contains(&row.name))
+}
+
+/// The command line that renders the same picture.
+fn command(shot: &Shot, place: &Place, settings: &Settings) -> String {
+    let vector = |vector: Vec3| format!("{},{},{}", vector.x, vector.y, vector.z);
+    let Camera { eye, look_at, up, fov, near, far } = shot.job.camera;
+    let mut words = vec!["raywalk".to_owned(), "render".to_owned()];
+    words.extend(place.file.as_ref().map(|file| quoted(&file.display().to_string())));
+    words.push(format!("--size {}x{}", shot.picture.width, shot.picture.height));
+    // Near and far have no flags of their own: they come with a camera of the scene.
+    let is_alike = |camera: &NamedCamera| (camera.camera.near, camera.camera.far) == (near, far);
+    if let Some(index) = place.cameras.iter().position(is_alike).filter(|index| *index > 0) {
+        words.push(format!("--camera {}", quoted(&place.cameras[index].name)));
+    }
+    words.push(format!("--eye {} --look-at {} --up {} --fov {fov}", vector(eye), vector(look_at), vector(up)));
+    let exact = Settings::exact();
+    let changed = picture_rows().filter(|row| (row.get)(settings) != (row.get)(&exact));
+    words.extend(changed.map(|row| format!("--{} {}", row.name, (row.get)(settings))));
+    if shot.job.aspect.map != Map::Picture {
+        words.push(format!("--map {}", shot.job.aspect.map.name()));
+    }
+    words.join(" ")
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "._-/+:@%,".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::lowering::Lowering;
+    use crate::app::methods::Aspect;
+    use crate::picture::temporary::Folder;
+    use crate::render::Planes;
+    use crate::scene::{Scene, nothing};
+    use crate::settings::Fill;
+    use std::sync::{Arc, LazyLock};
+
+    fn job() -> Job {
+        static SCENE: LazyLock<Arc<Scene>> = LazyLock::new(|| Arc::new(nothing().expect("it is built in")));
+        let settings = Settings { fill: Fill::Color, threads: 3, render_scale: 0.5, ..Settings::exact() };
+        Job {
+            scene: Arc::clone(&SCENE),
+            camera: Camera::default(),
+            settings,
+            width: 8,
+            height: 4,
+            lowering: Lowering::NONE,
+            aspect: Aspect::default(),
+        }
+    }
+
+    fn shot(samples: Option<u32>) -> Shot {
+        Shot::new(&Film::new(8, 4, Planes::default()), &job(), samples)
+    }
+
+    fn place(file: Option<&str>) -> Place {
+        let named =
+            |name: &str, near| NamedCamera { name: name.to_owned(), camera: Camera { near, ..Camera::default() } };
+        Place { file: file.map(PathBuf::from), cameras: vec![named("default", 0.5), named("back door", 0.0)] }
+    }
+
+    #[test]
+    fn the_command_says_all_that_the_picture_depends_on() {
+        let of = |shot: &Shot, place: &Place| command(shot, place, &shot.settings());
+        let view = "--size 8x4 --camera 'back door' --eye 0,0,5 --look-at 0,0,0 --up 0,1,0 --fov 60 --fill color";
+        let as_set = of(&shot(None), &place(Some("a b.json")));
+        assert_eq!(as_set, format!("raywalk render 'a b.json' {view} --render-scale 0.5"));
+        let refined = of(&shot(Some(SAMPLES)), &place(None));
+        assert_eq!(refined, format!("raywalk render {view} --supersample 16"));
+        let first = Place { cameras: place(None).cameras.split_off(1), file: None };
+        assert!(!of(&shot(None), &first).contains("--camera"));
+    }
+
+    #[test]
+    fn a_view_at_rest_is_taken_when_it_is_refined_and_one_that_is_left_as_it_was() {
+        let film = Film::new(8, 4, Planes::default());
+        let mut camerawork = Camerawork::default();
+        assert_eq!(camerawork.ask(shot(None)), Some(shot(None)), "at once");
+        assert_eq!(camerawork.frame(&film, &job(), None), None, "nothing waits");
+        assert_eq!(camerawork.ask(shot(Some(3))), None);
+        assert_eq!(camerawork.frame(&film, &job(), Some(9)), None);
+        assert_eq!(camerawork.frame(&film, &job(), Some(SAMPLES)), Some(shot(Some(SAMPLES))));
+        assert_eq!(camerawork.ask(shot(Some(3))), None);
+        let elsewhere = Job { width: 9, ..job() };
+        assert_eq!(camerawork.frame(&film, &elsewhere, None), Some(shot(Some(3))));
+        assert_eq!(camerawork.give_up(), None);
+    }
+
+    #[test]
+    fn pictures_are_numbered_past_those_that_are_there_and_tell_what_made_them() {
+        let folder = Folder::new();
+        folder.write("walk-0001.png", b"of old");
+        let name = name(&folder.0.join("walk-%04d.png")).expect("a number and .png");
+        for number in [2, 3] {
+            let news = errand(shot(Some(7)), place(None), name.clone())();
+            let path = folder.0.join(format!("walk-000{number}.png"));
+            assert_eq!(news, Some(News::Done(format!("screenshot: {}", path.display()))));
+            let file = std::io::BufReader::new(std::fs::File::open(path).expect("there"));
+            let reader = png::Decoder::new(file).read_info().expect("a PNG");
+            let texts = &reader.info().uncompressed_latin1_text;
+            let text = |keyword: &str| texts.iter().find(|t| t.keyword == keyword).expect("a note").text.clone();
+            assert!(text("raywalk:command").starts_with("raywalk render --size 8x4"));
+            assert_eq!(text("raywalk:scene"), "built-in");
+            let camera: serde_json::Value = serde_json::from_str(&text("raywalk:camera")).expect("JSON");
+            assert_eq!(camera["position"], json!([0.0, 0.0, 5.0]));
+            let settings: serde_json::Value = serde_json::from_str(&text("raywalk:settings")).expect("JSON");
+            assert_eq!((settings["fill"].as_str(), settings.get("threads")), (Some("color"), None));
+            assert!(text("raywalk:samples").starts_with("7 of 16"));
+        }
+        assert_eq!(std::fs::read(folder.0.join("walk-0001.png")).expect("there"), b"of old");
+    }
+
+    #[test]
+    fn a_folder_that_is_not_there_is_told_of() {
+        let folder = Folder::new();
+        let name = name(&folder.0.join("missing/%d.png")).expect("a number and .png");
+        let Some(News::Problem(text)) = errand(shot(None), place(None), name)() else { panic!("written") };
+        assert!(text.contains("missing"), "{text}");
+    }
+
+    #[test]
+    fn names_have_a_number_and_are_png() {
+        assert!(["a.png", "%04d.jpg", "%04d", "%04d/a.png"].iter().all(|bad| name(Path::new(bad)).is_err()));
+        assert!(name(Path::new(USUAL_NAME)).is_ok());
+    }
+}
