@@ -32,7 +32,7 @@ pub struct Stage {
 
 /// Reads the scene and tells its warnings on stderr, unless they were not wanted.
 pub fn load(reading: &Reading) -> Result<Loaded, SceneError> {
-    let options = LoadOptions { strict: reading.strict, limits: reading.limits.clone() };
+    let options = LoadOptions { strict: reading.strict, limits: reading.limits.clone(), ..LoadOptions::default() };
     let start = Instant::now();
     let scene = match &reading.scene {
         Some(file) => scene::load(file, &options)?,

@@ -180,8 +180,8 @@ impl<S: Simd> Skin<S> {
         sight: &Sight<S>,
         textured: u64,
     ) {
-        let ids = &frame.scene.geometry.ids;
-        let id = ids[hits.primitives[hits.first()] as usize];
+        let geometry = &frame.scene.geometry;
+        let Some(id) = geometry.id(hits.primitives[hits.first()]) else { return };
         if hits.common.is_some() {
             let sides = Mask::<S>::splat(simd, id.primitive == 0);
             let object = Object { number: id.object, sides, members: textured };
@@ -190,8 +190,9 @@ impl<S: Simd> Skin<S> {
         }
         let (mut objects, mut parts) = ([id.object; MOST_LANES], [id.primitive; MOST_LANES]);
         for lane in hits.lanes() {
-            let id = ids[hits.primitives[lane] as usize];
-            (objects[lane], parts[lane]) = (id.object, id.primitive);
+            if let Some(id) = geometry.id(hits.primitives[lane]) {
+                (objects[lane], parts[lane]) = (id.object, id.primitive);
+            }
         }
         let lanes = S::u32s::from_slice(simd, &objects[..S::f32s::LEN]);
         let sides = S::u32s::from_slice(simd, &parts[..S::f32s::LEN]).simd_eq(0);

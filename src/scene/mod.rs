@@ -20,6 +20,7 @@ pub mod path;
 pub mod texels;
 pub mod texture;
 
+pub use build::Instancing;
 pub use builtin::builtin;
 pub use camera::Camera;
 pub use error::{SceneError, Warning};

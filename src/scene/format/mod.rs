@@ -9,7 +9,7 @@ mod polygon;
 mod words;
 mod xml;
 
-use super::build::SceneBuilder;
+use super::build::{Instancing, SceneBuilder};
 use super::desc::SceneDesc;
 use super::desc::problem::{At, Outcome, Warnings};
 use super::error::{Place, SceneError, Warning};
@@ -24,6 +24,8 @@ pub struct LoadOptions {
     pub strict: bool,
     /// What the scene may ask of the machine.
     pub limits: Limits,
+    /// When meshes that are placed several times are stored once.
+    pub instancing: Instancing,
 }
 
 /// The scene or model file that a reader is given.
@@ -90,7 +92,7 @@ pub fn load_text(name: &str, text: &str, options: &LoadOptions) -> Result<Scene,
 
 fn read(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, SceneError> {
     let format = format_of(input.path)?;
-    let mut builder = SceneBuilder::new(input.path, format.name, files, options.limits.clone());
+    let mut builder = SceneBuilder::new(input.path, format.name, files, options);
     (format.read)(input, &mut builder)?;
     let mut scene = builder.finish();
     if scene.objects.is_empty() {
