@@ -1,8 +1,8 @@
 //! What a ray can meet and how to find it. This room knows no colour.
 //!
 //! [`Geometry`] holds every primitive in [`Block`]s of one type and a tree over them; meshes that are placed often are
-//! stored once, as [instances](instance). [`traverse`](Search::traverse)
-//! is the one text that finds closest hits and occluders, with what to do about a hit left to a [`Visitor`].
+//! stored once, as [instances](instance). [`traverse`](Search::traverse) is the one text that finds closest hits and
+//! occluders, with what to do about a hit left to a [`Visitor`].
 
 pub mod aabb;
 pub mod beam;

@@ -263,27 +263,37 @@ impl Tables {
         }
     }
 
-    /// What the corners of a primitive carry, in the kernel's order.
+    /// Of what the corners of a primitive carry, in the kernel's order, what is to be picked.
     #[inline(always)]
-    pub fn attributes(&self, geometry: &Geometry, primitive: PrimitiveIndex) -> Option<VertexAttributes> {
+    pub fn attributes<T>(
+        &self,
+        geometry: &Geometry,
+        primitive: PrimitiveIndex,
+        pick: impl Fn(&VertexAttributes) -> T,
+    ) -> Option<T> {
         match geometry.instances.find(primitive) {
             Home::Own(own) => {
                 let place = *self.attributes_of.get(own as usize)?;
-                geometry.attributes.get(place as usize).map(|(_, attributes)| *attributes)
+                geometry.attributes.get(place as usize).map(|(_, attributes)| pick(attributes))
             }
-            Home::Shared(triangle) => geometry.instances.attributes(triangle),
+            Home::Shared(triangle) => geometry.instances.attributes(triangle).map(|attributes| pick(&attributes)),
         }
     }
 
-    /// What the corners of a primitive carry besides, in the kernel's order.
+    /// Of what they carry besides, in the same order, what is to be picked.
     #[inline(always)]
-    pub fn extras(&self, geometry: &Geometry, primitive: PrimitiveIndex) -> Option<VertexExtras> {
+    pub fn extras<T>(
+        &self,
+        geometry: &Geometry,
+        primitive: PrimitiveIndex,
+        pick: impl Fn(&VertexExtras) -> T,
+    ) -> Option<T> {
         match geometry.instances.find(primitive) {
             Home::Own(own) => {
                 let place = *self.extras_of.get(own as usize)?;
-                geometry.extras.get(place as usize).map(|(_, extras)| *extras)
+                geometry.extras.get(place as usize).map(|(_, extras)| pick(extras))
             }
-            Home::Shared(triangle) => geometry.instances.extras(triangle),
+            Home::Shared(triangle) => geometry.instances.extras(triangle).map(|extras| pick(&extras)),
         }
     }
 

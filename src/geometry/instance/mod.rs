@@ -260,3 +260,59 @@ impl Instances {
         (instance, &self.meshes[instance.mesh as usize])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Geometry, Mesh, Part, Shape};
+    use std::sync::Arc;
+
+    fn corners(at: f64) -> [DVec3; 3] {
+        [DVec3::new(at, 0.0, 0.0), DVec3::new(at + 1.0, 0.0, 0.0), DVec3::new(at, 1.0, 0.0)]
+    }
+
+    /// Spheres as objects 0, 2 and 5, meshes of two triangles as objects 1, 3 and 4.
+    fn geometry() -> Geometry {
+        let vertices = [corners(0.0), corners(3.0)].concat();
+        let mesh = Mesh { vertices, triangles: vec![[0, 1, 2], [3, 4, 5]], ..Mesh::default() };
+        let shared = SharedMesh::new(Arc::new(mesh)).expect("there are triangles");
+        let place = |object: u32| {
+            let away = Transform::new(DAffine3::from_translation(DVec3::Z * f64::from(object))).expect("it is usable");
+            let bounds = Aabb { min: Vec3::new(0.0, 0.0, object as f32), max: Vec3::new(4.0, 1.0, object as f32) };
+            Instance::new((0, &shared), object, away, bounds, 2).expect("it is usable")
+        };
+        let placed = [1, 3, 4].map(place).to_vec();
+        let sphere = |object: u32| {
+            let center = Vec3::Y * 10.0 * object as f32;
+            Part::new(Shape::Sphere { center, radius: 1.0 }, PrimitiveId { object, primitive: 0 })
+        };
+        Geometry::build_with([0, 2, 5].map(sphere).to_vec(), Instances { meshes: vec![shared], placed })
+    }
+
+    #[test]
+    fn indices_ascend_with_identities() {
+        let geometry = geometry();
+        let ids: Vec<_> =
+            (0..geometry.indices() as u32).map(|index| geometry.id(index).expect("it is there")).collect();
+        let expected = [(0, 0), (1, 0), (1, 1), (2, 0), (3, 0), (3, 1), (4, 0), (4, 1), (5, 0)];
+        assert_eq!(ids, expected.map(|(object, primitive)| PrimitiveId { object, primitive }));
+        assert!(geometry.id(geometry.indices() as u32).is_none() && geometry.id(u32::MAX).is_none());
+        let ranges: Vec<_> = (0..7).map(|object| geometry.indices_of(object)).collect();
+        assert_eq!(ranges, [0..1, 1..3, 3..4, 4..6, 6..8, 8..9, 9..9]);
+        let mut spheres: Vec<u32> =
+            geometry.spheres.iter().flat_map(|block| &block.indices[..block.len as usize]).copied().collect();
+        spheres.sort_unstable();
+        assert_eq!(spheres, [0, 3, 8]);
+    }
+
+    #[test]
+    fn triangles_are_found_where_they_are_placed() {
+        let geometry = geometry();
+        assert_eq!(geometry.triangle(0), None);
+        for (index, at, object) in [(1, 0.0, 1.0), (2, 3.0, 1.0), (7, 3.0, 4.0)] {
+            let moved = corners(at).map(|corner| corner.as_vec3() + Vec3::Z * object);
+            assert_eq!(geometry.triangle(index), Some(Triangle::fields(moved)));
+            assert_eq!(geometry.plane_of(index).map(|(normal, _)| normal.abs()), Some(Vec3::Z));
+        }
+    }
+}
