@@ -15,6 +15,7 @@ mod flips;
 mod formats;
 mod gltf;
 mod imports;
+mod instancing;
 mod interpolation;
 mod maps;
 mod our_scenes;

@@ -78,7 +78,7 @@ mod tests {
         frame_ms: 4.25,
         size: (80, 46),
         preset: "balanced",
-        speed: 3.14,
+        speed: 3.12,
         walks: false,
         samples: None,
     };
