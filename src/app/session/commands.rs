@@ -1,0 +1,138 @@
+//! What keys ask for once.
+
+use super::events::WindowHost;
+use super::{NO_ROOM, STEP, Session};
+use crate::app::input::Command;
+use crate::app::scenes::Wish;
+use crate::app::{desktop, methods};
+use crate::scene::{self, Camera};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// A step of the size of panel and text.
+const UI_STEP: f32 = 1.1;
+
+impl Session {
+    /// Does what a key asks for; [`Command::Quit`] is up to the caller.
+    pub(super) fn obey(&mut self, now: Instant, command: Command) {
+        match command {
+            Command::ReleasePointer if self.capture.is_active() => {
+                self.journey.stop_replay();
+                self.capture.release(&WindowHost(&self.window));
+            }
+            Command::ReleasePointer if self.journey.stop_replay() => {}
+            Command::ReleasePointer if self.shown.help => self.shown.help = false,
+            Command::ReleasePointer => self.wish(Wish::Cancel),
+            Command::ToggleHelp => {
+                // It is read with a free pointer.
+                self.capture.release(&WindowHost(&self.window));
+                self.shown = self.shown.with_help_toggled();
+            }
+            Command::Open => self.wish(Wish::Open),
+            Command::Reload => self.wish(Wish::Reload),
+            Command::Inspect => self.inspect(),
+            Command::TogglePanel => self.shown = self.shown.with_panel_toggled(),
+            Command::ToggleOverlay => self.shown.overlay = !self.shown.overlay,
+            Command::Home => {
+                self.journey.stop_replay();
+                self.walker.go_home();
+            }
+            Command::ToggleWalking => self.toggle_walking(now),
+            Command::Screenshot => self.take_screenshot(now),
+            Command::ToggleFullscreen => desktop::toggle_fullscreen(&self.window),
+            Command::EnlargeUi => self.scale_ui(self.ui_scale * UI_STEP),
+            Command::ReduceUi => self.scale_ui(self.ui_scale / UI_STEP),
+            Command::ResetUi => self.scale_ui(1.0),
+            Command::StoreBookmark(number) => {
+                self.keeper.config.bookmarks.of_mut(self.scenes.file()).store(number, self.walker.camera());
+                self.notices.tell(now, format!("Bookmark {number} set: key {number} comes back here"));
+            }
+            Command::GoToBookmark(number) => match self.keeper.config.bookmarks.of(self.scenes.file()).get(number) {
+                Some(camera) => self.go_to(camera),
+                None => self.notices.warn(now, format!("There is no bookmark {number}: Ctrl+{number} sets it")),
+            },
+            Command::CopyCamera => {
+                self.layer.copy(self.walker.camera().to_json());
+                self.notices.tell(now, "Camera copied as JSON");
+            }
+            Command::PasteCamera => self.paste(now),
+            Command::ToggleRecording => self.toggle_recording(now),
+            Command::ToggleReplay => self.toggle_replay(now),
+            Command::NextMap => self.change_methods(&methods::Change::Map(self.methods.map.next())),
+            Command::ToggleSplit => self.change_methods(&methods::Change::Split(!self.methods.split.is_on)),
+            Command::Quit => {}
+        }
+        self.keeper.touch(now);
+        self.repaint(now);
+    }
+
+    pub(super) fn go_to(&mut self, camera: Camera) {
+        self.journey.stop_replay();
+        self.walker.go_to(camera);
+    }
+
+    /// Goes to the camera on the clipboard.
+    pub(super) fn paste(&mut self, now: Instant) {
+        let text = self.layer.pasted().filter(|text| !text.trim().is_empty());
+        match text.as_deref().map(|text| scene::read_camera("clipboard", text)) {
+            None => self.notices.warn(now, "There is no text on the clipboard to paste a camera from"),
+            Some(Err(error)) => self.notices.warn(now, format!("What was pasted is no camera: {error}")),
+            Some(Ok(camera)) => {
+                self.go_to(camera);
+                self.notices.tell(now, "Camera pasted");
+            }
+        }
+    }
+
+    pub(super) fn toggle_recording(&mut self, now: Instant) {
+        let camera = self.walker.camera();
+        if self.journey.is_recording() {
+            self.journey.finish(now, camera, PathBuf::new(), self.walker.surroundings());
+        } else {
+            self.journey.record(now, camera);
+            self.notices.tell(now, self.labels.of("Recording where you go: R stops"));
+        }
+    }
+
+    pub(super) fn toggle_replay(&mut self, now: Instant) {
+        if self.journey.is_recording() {
+            self.notices.warn(now, self.labels.of("Still recording: R stops"));
+        } else if !self.journey.stop_replay() && !self.journey.replay(now) {
+            self.notices.warn(now, self.labels.of("Nothing is recorded yet: R starts"));
+        }
+    }
+
+    /// Follows a recording and a replay; says when to be called again.
+    pub(super) fn travel(&mut self, now: Instant) -> Option<Instant> {
+        let base = self.walker.camera();
+        if let Some(camera) = self.journey.camera(now, &base) {
+            self.walker.go_to(camera);
+        }
+        if self.journey.see(now, self.walker.camera()) {
+            self.toggle_recording(now);
+        }
+        if let Some(written) = self.journey.written() {
+            match written {
+                Ok(file) => {
+                    let told = format!("Path written to {}: P replays it", file.display());
+                    self.notices.tell(now, self.labels.of(&told));
+                }
+                Err(reason) => self.notices.warn(now, reason),
+            }
+            self.repaint(now);
+        }
+        self.journey.next(now, STEP)
+    }
+
+    /// Fly or walk. The speed that held keys had so far was that of the other.
+    pub(super) fn toggle_walking(&mut self, now: Instant) {
+        if !self.walker.toggle_walking(&self.scene.geometry) {
+            self.notices.warn(now, NO_ROOM);
+        } else if self.walker.is_walking() {
+            self.notices.tell(now, self.labels.of("Walking: Space jumps, G flies"));
+        } else {
+            self.notices.tell(now, self.labels.of("Flying: G walks"));
+        }
+        self.step(now);
+    }
+}

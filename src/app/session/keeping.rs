@@ -1,0 +1,53 @@
+//! What outlasts the window: settings, pictures, and news of how writing them went.
+
+use super::Session;
+use crate::app::screenshot::{self, Place, Shot};
+use crate::app::{desktop, errands, walker};
+use std::path::Path;
+use std::time::Instant;
+
+impl Session {
+    /// Brings what is remembered up to date and has it written, if there is anything new.
+    pub(super) fn save_config(&mut self) {
+        if let Some(state) = desktop::state_of(&self.window) {
+            self.keeper.keep_window(state);
+        }
+        self.keeper.keep_settings(&self.settings);
+        let config = &mut self.keeper.config;
+        config.ui_scale = self.ui_scale;
+        config.invert_look = self.walker.invert_look;
+        config.sensitivity = (self.walker.sensitivity != walker::SENSITIVITY).then_some(self.walker.sensitivity);
+        config.panel = self.shown.panel;
+        config.recent.clone_from(self.scenes.recent());
+        if let Some(errand) = self.keeper.save() {
+            self.errands.run(errand);
+        }
+    }
+
+    /// Keeps the picture on display as a file, or what it is about to become.
+    pub(super) fn take_screenshot(&mut self, now: Instant) {
+        let film = self.fresh.as_ref().map(|frame| &frame.film).or_else(|| self.presenter.frame());
+        let shot = film.zip(self.traced.as_ref()).map(|(film, (job, samples))| Shot::new(film, job, *samples));
+        match shot.map(|shot| self.camerawork.ask(shot)) {
+            None => self.notices.warn(now, "no picture yet"),
+            Some(None) => self.notices.tell(now, "screenshot as soon as the picture has all its samples"),
+            Some(Some(shot)) => self.write(shot),
+        }
+    }
+
+    pub(super) fn write(&self, shot: Shot) {
+        let place = Place { file: self.scenes.file().map(Path::to_owned), cameras: self.scene.cameras.clone() };
+        self.errands.run(screenshot::errand(shot, place, self.screenshots.clone()));
+    }
+
+    /// Tells what came of errands.
+    pub fn tell_news(&mut self, now: Instant) {
+        for news in self.errands.news().collect::<Vec<_>>() {
+            match news {
+                errands::News::Done(text) => self.notices.tell(now, text),
+                errands::News::Problem(text) => self.notices.warn(now, text),
+            }
+            self.repaint(now);
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Scenes that come and change while the window is open.
+
+use super::events::WindowHost;
+use super::{Session, title};
+use crate::app::capture::PointerHost;
+use crate::app::error::AppError;
+use crate::app::inspection;
+use crate::app::lighting::Lighting;
+use crate::app::lowering::presets_below;
+use crate::app::scenes::{Arrival, News, Wish};
+use crate::app::steering::Steering;
+use crate::app::tracer::Job;
+use crate::scene::Scene;
+use glam::DVec2;
+use std::sync::Arc;
+use std::time::Instant;
+use winit::dpi::PhysicalSize;
+
+impl Session {
+    /// Takes up what has become of scenes.
+    ///
+    /// # Errors
+    /// The first scene of all could not be loaded.
+    pub fn on_news(&mut self) -> Result<(), AppError> {
+        while let Some(news) = self.scenes.news() {
+            match news {
+                News::Opened(arrival) => self.enter(arrival),
+                News::Reloaded(arrival) => self.replace_scene(arrival.scene),
+                News::Nothing(failed) => return Err(AppError::NoScene(failed)),
+            }
+        }
+        self.repaint(Instant::now());
+        Ok(())
+    }
+
+    /// Goes to another scene.
+    pub(super) fn enter(&mut self, Arrival { scene, camera, size, .. }: Arrival) {
+        self.walker.enter(&scene, camera);
+        self.lighting = Lighting::of(&scene);
+        if let Some((width, height)) = size.filter(|_| !self.is_placed) {
+            // The window stays as it is where the system does not let it be resized.
+            let _ = self.window.request_inner_size(PhysicalSize::new(width, height));
+        }
+        self.show_scene(scene);
+    }
+
+    /// Shows what the scene has become, from where the walker stands.
+    pub(super) fn replace_scene(&mut self, scene: Arc<Scene>) {
+        let home = self.walker.home();
+        let named = self.scene.cameras.iter().position(|named| named.camera == home);
+        if let Some(moved) = named.and_then(|index| scene.cameras.get(index)) {
+            self.walker.set_home(moved.camera);
+        }
+        self.lighting.keep_for(&scene);
+        self.show_scene(scene);
+    }
+
+    pub(super) fn show_scene(&mut self, scene: Arc<Scene>) {
+        self.tracer.stop_search();
+        self.survey = None;
+        self.steering = Steering::new(presets_below(&self.settings));
+        self.window.set_title(&title(&scene));
+        self.inspection = None;
+        self.lit = self.lighting.lit(&scene);
+        self.walker.lose_footing();
+        self.scene = scene;
+    }
+
+    /// Tells of what the picture shows under the pointer, or in its middle while the pointer is captured.
+    pub(super) fn inspect(&mut self) {
+        let Some((Job { scene, camera, width, height, .. }, _)) = &self.traced else { return };
+        let host = WindowHost(&self.window);
+        let place = if self.capture.is_active() { DVec2::splat(0.5) } else { self.pointer / host.size() };
+        self.inspection = inspection::inspect(scene, camera, (*width, *height), place);
+    }
+
+    /// Does what the user asks of scenes.
+    pub(super) fn wish(&mut self, wish: Wish) {
+        self.scenes.grant(wish, &*self.window);
+    }
+}
