@@ -589,8 +589,8 @@ mod tests {
         scenes.open(&file);
         opened(&mut scenes, &woken);
         let bad = folder.write("notes.txt", "");
-        scenes.open(&bad);
-        assert!(wait(&mut scenes, &woken, |scenes| scenes.failure.is_some()).is_none());
+        scenes.drop_in(bad.clone());
+        assert!(scenes.open_dropped() && wait(&mut scenes, &woken, |scenes| scenes.failure.is_some()).is_none());
         let failure = scenes.report(Instant::now()).failure.cloned().expect("it is no scene");
         assert!(failure.message.contains("unknown scene format") && failure.file.as_ref() == Some(&bad));
         // What is shown is still watched.
