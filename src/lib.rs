@@ -11,7 +11,7 @@
 //! | [`render`] | one frame from scene, camera and settings; no window, no file |
 //! | [`picture`] | pictures on disk |
 //! | [`measure`] | how fast and how true: metrics, runs, records, benches, charts |
-//! | [`app`] | the window: input in, picture and panel out |
+//! | [`app`] | the window, or the terminal: input in, picture and panel out |
 //!
 //! Everything that draws goes through one waist, [`render::render_frame`]:
 //!

@@ -6,6 +6,7 @@
 //! | 1 | the input or the run failed |
 //! | 2 | wrong usage |
 //! | 130 | stopped by Ctrl-C |
+//! | 128 + n | a walk in the terminal was stopped by signal n |
 
 mod cli;
 

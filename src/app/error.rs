@@ -19,6 +19,9 @@ pub enum AppError {
     /// No thread to trace on.
     #[error("cannot start the tracing thread: {0}")]
     NoThread(#[from] std::io::Error),
+    /// The terminal refused, or went away during a walk in it.
+    #[error("the terminal failed: {0}")]
+    Terminal(std::io::Error),
     /// The window system ended the event loop.
     #[error("the window system failed: {0}")]
     EventLoop(#[from] winit::error::EventLoopError),

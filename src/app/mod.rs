@@ -1,4 +1,4 @@
-//! The window: input in, traced frames and the overlay out.
+//! The window: input in, traced frames and the overlay out; or the same walk in a [`terminal`].
 //!
 //! The main thread runs the event loop: it gathers input, moves the walker, uploads, draws and presents, each a
 //! matter of milliseconds. Frames are traced on a thread of their own ([`tracer`]), so that neither input nor the
@@ -22,6 +22,7 @@ pub mod present;
 pub mod scenes;
 pub mod screenshot;
 pub mod survey;
+pub mod terminal;
 pub mod walker;
 
 mod at_rest;

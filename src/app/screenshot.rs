@@ -2,6 +2,7 @@
 
 use super::at_rest::SAMPLES;
 use super::errands::{Errand, News};
+use super::maps::Map;
 use super::tracer::Job;
 use crate::picture::{EightBit, Note, NumberedName, PendingFile, write_annotated};
 use crate::render::Film;
@@ -150,6 +151,9 @@ fn notes(shot: &Shot, place: &Place) -> Vec<Note> {
         ("raywalk:camera", camera.to_string()),
         ("raywalk:settings", serde_json::Value::Object(values).to_string()),
     ];
+    if let Some(beside) = &shot.job.aspect.beside {
+        notes.push(("raywalk:beside", format!("right of the divider: {}", beside.flags())));
+    }
     if let Some(samples) = shot.samples.filter(|_| !shot.is_final()) {
         notes.push((
             "raywalk:samples",
@@ -181,6 +185,9 @@ fn command(shot: &Shot, place: &Place, settings: &Settings) -> String {
     let exact = Settings::exact();
     let changed = picture_rows().filter(|row| (row.get)(settings) != (row.get)(&exact));
     words.extend(changed.map(|row| format!("--{} {}", row.name, (row.get)(settings))));
+    if shot.job.aspect.map != Map::Picture {
+        words.push(format!("--map {}", shot.job.aspect.map.name()));
+    }
     words.join(" ")
 }
 

@@ -20,9 +20,9 @@ pub fn command() -> Command {
         .version(crate_version!())
         .about(about)
         .after_help(
-            "Without a command: opens a window on SCENE, or on the built-in scene. With no display, renders one frame \
-             to raywalk.png in the current folder.\n\nExit codes: 0 done, 1 the input or the run failed, 2 wrong \
-             usage, 130 after Ctrl-C.",
+            "Without a command: opens a window on SCENE, or on the built-in scene. With no display, walks in the \
+             terminal; without a terminal, renders one frame to raywalk.png in the current folder.\n\nExit codes: 0 \
+             done, 1 the input or the run failed, 2 wrong usage, 130 after Ctrl-C.",
         )
         .args_conflicts_with_subcommands(true)
         .subcommand_precedence_over_arg(true)
@@ -35,7 +35,8 @@ pub fn command() -> Command {
                 .value_parser(|name: &str| screenshot::name(Path::new(name)))
                 .help("Where F12 puts pictures; %04d stands for their number [default: raywalk-%04d.png]"),
         );
-    with_shared(view).subcommands([render(), bench(), tune(), info(), compare()])
+    let terminal = switch("terminal", "Walk in the terminal, not in a window: WASD, arrows, Q to quit");
+    with_shared(view.arg(terminal)).subcommands([render(), bench(), tune(), info(), compare()])
 }
 
 fn render() -> Command {

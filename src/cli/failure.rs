@@ -40,6 +40,9 @@ pub enum Failure {
     /// Ctrl-C.
     #[error("interrupted")]
     Interrupted,
+    /// A signal that asks to end, by its number.
+    #[error("stopped by signal {0}")]
+    Signal(i32),
 }
 
 impl Failure {
@@ -53,6 +56,7 @@ impl Failure {
         match self {
             Self::Usage(_) | Self::Picture(PictureError::UnknownExtension { .. }) => Self::WRONG_USAGE,
             Self::Interrupted | Self::Bench(BenchError::Interrupted) => Self::INTERRUPTED,
+            Self::Signal(number) => u8::try_from(128 + number).unwrap_or(1),
             _ => 1,
         }
     }

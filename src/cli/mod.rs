@@ -13,6 +13,7 @@ mod progress;
 mod render;
 mod stage;
 mod stdout;
+mod terminal;
 mod tune;
 mod values;
 mod view;

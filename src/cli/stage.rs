@@ -33,8 +33,12 @@ pub struct Stage {
 
 /// Reads the scene and tells its warnings on stderr, unless they were not wanted.
 pub fn load(reading: &Reading) -> Result<Loaded, SceneError> {
-    let options =
-        LoadOptions { strict: reading.strict, limits: reading.limits.clone(), progress: reading.progress.clone() };
+    let options = LoadOptions {
+        strict: reading.strict,
+        limits: reading.limits.clone(),
+        progress: reading.progress.clone(),
+        ..LoadOptions::default()
+    };
     let _shown = Drawing::of_load(&reading.progress, reading.quiet);
     let start = Instant::now();
     let scene = match &reading.scene {

@@ -1,4 +1,4 @@
-//! `raywalk [SCENE]`: the window, or one picture where there is no display.
+//! `raywalk [SCENE]`: the window; where there is no display a walk in the terminal, or one picture.
 
 use super::frames::Frames;
 use super::interrupt::Interrupt;
@@ -8,9 +8,9 @@ use super::stage::{DEFAULT_SIZE, Loaded, Stage};
 use super::values::Size;
 use super::{Failure, render, stdout};
 use clap::ArgMatches;
-use raywalk::app::config::{Config, Store};
+use raywalk::app::config::{Config, Store, usual_settings};
 use raywalk::app::scenes::{Arrival, Failed, Load, Outcome};
-use raywalk::app::{self, AppError, AppOptions, Opening, screenshot};
+use raywalk::app::{self, AppError, AppOptions, Opening, screenshot, terminal};
 use raywalk::picture::{NumberedName, WriteOptions};
 use raywalk::scene::LoadOptions;
 use raywalk::settings::Settings;
@@ -22,13 +22,16 @@ const PICTURE: &str = "raywalk.png";
 /// A scene that is loaded sooner needs no window to wait in.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// Opens the window, or else renders one frame.
+/// Opens the window, or else walks in the terminal, or else renders one frame.
 pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
+    let in_terminal = asked.get_flag("terminal");
+    if in_terminal && !terminal::is_there() {
+        let what = "standard input and output must be a terminal, and TERM must name it";
+        return Err(Failure::Usage(format!("--terminal: {what}; without one, raywalk render draws a picture")));
+    }
     let mut options = Options::of(asked, Settings::balanced)?;
     let (config, store) = config(asked, &options);
-    let own = config.start_settings();
-    let start = named_preset(asked).map_or_else(|| own.clone(), |preset| (preset.settings)().in_place_of(&own));
-    options.settings = with_flags(asked, start)?;
+    options.settings = settings(asked, &config.start_settings())?;
     let screenshots = screenshots(asked, &config, options.reading.quiet);
     output::check_planes(Some(Path::new(PICTURE)), options.planes)?;
     let frames = Frames::of(&options)?;
@@ -58,12 +61,34 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
         store,
         screenshots,
     };
-    match app::run(window) {
-        Err(AppError::NoDisplay(reason)) => {
-            let arrival = match opening {
-                Opening::Scene(arrival) => arrival,
-                Opening::Loading(load, _) => arrived(load.wait_to_the_end())?,
-            };
+    // No window wanted, or none to be had.
+    let reason = if in_terminal {
+        None
+    } else {
+        match app::run(window) {
+            Err(AppError::NoDisplay(reason)) => Some(reason),
+            Err(AppError::NoScene(failed)) => return Err(failure(failed)),
+            Err(error) => return Err(error.into()),
+            Ok(end) => {
+                if !options.reading.quiet {
+                    end.warnings.iter().for_each(|warning| stdout::note(&format!("warning: {warning}")));
+                }
+                tell_of_stats(&options);
+                return Ok(());
+            }
+        }
+    };
+    let arrival = match opening {
+        Opening::Scene(arrival) => arrival,
+        Opening::Loading(load, _) => arrived(load.wait_to_the_end())?,
+    };
+    match reason.filter(|_| !terminal::is_there()) {
+        None => {
+            super::terminal::walk(asked, &arrival, settings(asked, &usual_settings())?, &interrupt)?;
+            tell_of_stats(&options);
+            Ok(())
+        }
+        Some(reason) => {
             // A still picture has no hurry: it is what `render` makes of the same words.
             let options = Options::of(asked, Settings::exact)?;
             picture(&stage_of(arrival, &options), &frames.first(), &options, &interrupt)?;
@@ -71,17 +96,19 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
             stdout::note(&format!("no window ({reason}): rendered one frame to {PICTURE}"));
             Ok(())
         }
-        Err(AppError::NoScene(failed)) => Err(failure(failed)),
-        Err(error) => Err(error.into()),
-        Ok(end) => {
-            if !options.reading.quiet {
-                end.warnings.iter().for_each(|warning| stdout::note(&format!("warning: {warning}")));
-            }
-            if options.stats.is_some() && !options.reading.quiet {
-                stdout::note("warning: a walk has no --stats; raywalk render writes them");
-            }
-            Ok(())
-        }
+    }
+}
+
+/// What a walk starts with: the preset named, or else what the user has of old, and every flag.
+fn settings(asked: &ArgMatches, own: &Settings) -> Result<Settings, Failure> {
+    let start = named_preset(asked).map_or_else(|| own.clone(), |preset| (preset.settings)().in_place_of(own));
+    with_flags(asked, start)
+}
+
+/// A walk has no figures of its run.
+fn tell_of_stats(options: &Options) {
+    if options.stats.is_some() && !options.reading.quiet {
+        stdout::note("warning: a walk has no --stats; raywalk render writes them");
     }
 }
 

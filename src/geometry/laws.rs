@@ -252,7 +252,7 @@ fn the_tree_finds_the_same_nearest_point() {
         });
         let mut with_tree = geometry(shapes.filter(|shape| !matches!(shape, Shape::Plane { .. })).collect::<Vec<_>>());
         let points: Vec<DVec3> = (0..100).map(|_| random.direction() * random.within(0.0, 10.0)).collect();
-        let within = |i: usize| if i % 2 == 0 { f64::INFINITY } else { 0.5 };
+        let within = |i: usize| if i.is_multiple_of(2) { f64::INFINITY } else { 0.5 };
         let find = |geometry: &Geometry| -> Vec<Option<f64>> {
             let found = points.iter().enumerate().map(|(i, &p)| Some(geometry.nearest(p, within(i))?.distance(p)));
             found.collect()

@@ -1,37 +1,45 @@
 //! What a ray can meet and how to find it. This room knows no colour.
 //!
-//! [`Geometry`] holds every primitive in [`Block`]s of one type and a tree over them; [`traverse`](Search::traverse)
-//! is the one text that finds closest hits and occluders, with what to do about a hit left to a [`Visitor`].
+//! [`Geometry`] holds every primitive in [`Block`]s of one type and a tree over them; meshes that are placed often are
+//! stored once, as [instances](instance). [`traverse`](Search::traverse) is the one text that finds closest hits and
+//! occluders, with what to do about a hit left to a [`Visitor`].
 
 pub mod aabb;
 pub mod beam;
 pub mod block;
 pub mod bvh;
 pub mod holes;
+pub mod instance;
 #[cfg(test)]
 mod laws;
+pub mod mesh;
 mod nearest;
 pub mod packet;
 pub mod primitive;
 pub mod ray;
 pub mod shape;
 mod single;
+pub mod transform;
 pub mod traverse;
 pub mod visitor;
 
 pub use aabb::Aabb;
 pub use block::{BLOCK, Block, NO_PRIMITIVE, PrimitiveIndex};
 pub use holes::{HoleMap, Holes, Wrap};
+pub use instance::{Home, Instance, Instances, SharedMesh};
+pub use mesh::Mesh;
 pub use packet::Packet;
 pub use ray::Rays;
 pub use shape::{Part, PrimitiveId, Shape, VertexAttributes, VertexExtras};
+pub use transform::Transform;
 pub use traverse::{Search, SphereTerms, Stack};
 pub use visitor::{AnyHit, ClosestHit, NextCrossing, Opaque, Visitor};
 
-use bvh::{Bvh, LeafMembers};
+use bvh::{Bvh, Child, LeafMembers};
 use glam::Vec3;
 use primitive::{Cone, Cutout, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Where a primitive lies: its type, its block and its place there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +50,11 @@ pub struct Slot {
     pub block: u32,
     /// Place within the block.
     pub place: u8,
+}
+
+impl Slot {
+    /// Of a triangle that is stored as part of a [`SharedMesh`]: no block has this number.
+    const SHARED: Self = Self { kind: PrimitiveKind::Triangle, block: u32::MAX, place: 0 };
 }
 
 macro_rules! define_geometry {
@@ -61,15 +74,17 @@ macro_rules! define_geometry {
         #[derive(Debug, Default)]
         pub struct Geometry {
             $(#[doc = concat!("Blocks of type ", stringify!($kernel), ".")] pub $blocks: Vec<Block<$fields>>,)+
-            /// Identity of each primitive, ascending.
+            /// Identity of each primitive that is not part of an instance, ascending.
             pub ids: Vec<PrimitiveId>,
-            /// Where each primitive lies.
+            /// Where each of those lies.
             pub slots: Vec<Slot>,
             /// What the corners of triangles carry, in the kernel's order of corners, for those primitives that carry
-            /// anything. Sorted by primitive.
-            pub attributes: Vec<(PrimitiveIndex, VertexAttributes)>,
+            /// anything. Sorted by their places in `ids`.
+            pub attributes: Vec<(u32, VertexAttributes)>,
             /// What the corners of few triangles carry besides, in the same order.
-            pub extras: Vec<(PrimitiveIndex, VertexExtras)>,
+            pub extras: Vec<(u32, VertexExtras)>,
+            /// Meshes that are placed often, and where.
+            pub instances: Instances,
             /// The holes of cut-out triangles, by block and place.
             pub holes: Vec<Holes>,
             /// The maps that holes are found on.
@@ -85,18 +100,22 @@ macro_rules! define_geometry {
         impl Geometry {
             /// Bounds of one primitive.
             pub fn bounds_of(&self, primitive: PrimitiveIndex) -> Aabb {
-                let slot = self.slots[primitive as usize];
+                let slot = self.slot(primitive);
+                if slot == Slot::SHARED {
+                    return Triangle::bounds(&self.shared_fields(primitive));
+                }
                 match slot.kind {
                     $(PrimitiveKind::$kernel =>
                         self.$blocks[slot.block as usize].bounds_of::<$kernel>(usize::from(slot.place)),)+
                 }
             }
 
-            /// How many primitives of a type there are.
+            /// How many primitives of a type there are, those of instances included.
             pub fn count(&self, kind: PrimitiveKind) -> usize {
-                match kind {
+                let own: usize = match kind {
                     $(PrimitiveKind::$kernel => self.$blocks.iter().map(|b| b.len as usize).sum(),)+
-                }
+                };
+                own + if kind == PrimitiveKind::Triangle { self.instances.triangles() } else { 0 }
             }
 
             /// How many blocks of a type there are.
@@ -112,14 +131,16 @@ macro_rules! define_geometry {
                 blocks
                     + self.ids.capacity() * size_of::<PrimitiveId>()
                     + self.slots.capacity() * size_of::<Slot>()
-                    + self.attributes.capacity() * size_of::<(PrimitiveIndex, VertexAttributes)>()
-                    + self.extras.capacity() * size_of::<(PrimitiveIndex, VertexExtras)>()
+                    + self.attributes.capacity() * size_of::<(u32, VertexAttributes)>()
+                    + self.extras.capacity() * size_of::<(u32, VertexExtras)>()
+                    + self.instances.bytes()
                     + self.holes.capacity() * size_of::<Holes>()
                     + self.bvh.as_ref().map_or(0, Bvh::bytes)
             }
 
-            /// Fills blocks and slots with what the leaves hold.
-            fn fill_blocks(&mut self, leaves: &[LeafMembers], packed: &[Packed]) {
+            /// Fills blocks and slots with what the leaves hold. `indices` are those of the primitives, where they are
+            /// not just their places.
+            fn fill_blocks(&mut self, leaves: &[LeafMembers], packed: &[Packed], indices: &[PrimitiveIndex]) {
                 $(
                     let own = leaves.par_iter().filter(|leaf| leaf.kind == PrimitiveKind::$kernel);
                     let own: Vec<&LeafMembers> = own.collect();
@@ -129,7 +150,7 @@ macro_rules! define_geometry {
                             let Packed::$kernel(fields) = &packed[member as usize] else {
                                 unreachable!("a leaf holds one type")
                             };
-                            block.push(*fields, member);
+                            block.push(*fields, indices.get(member as usize).copied().unwrap_or(member));
                         }
                         block
                     };
@@ -205,22 +226,30 @@ impl Geometry {
     /// Sorts parts into blocks and builds the tree. Parts come in ascending order of their [`PrimitiveId`];
     /// those without extent are dropped and counted.
     pub fn build(parts: Vec<Part>) -> Self {
-        Self::build_while(parts, &|| true).unwrap_or_default()
+        Self::build_with(parts, Instances::default())
     }
 
-    /// As [`build`](Self::build), but gives up soon after `wanted` says no.
-    pub fn build_while(parts: Vec<Part>, wanted: &dyn Fn() -> bool) -> Option<Self> {
+    /// [`build`](Self::build) with instances besides. All primitives together must have fewer indices than fit 32 bits.
+    pub fn build_with(parts: Vec<Part>, instances: Instances) -> Self {
+        Self::build_while(parts, instances, &|| true).unwrap_or_default()
+    }
+
+    /// As [`build_with`](Self::build_with), but gives up soon after `wanted` says no.
+    pub fn build_while(parts: Vec<Part>, mut instances: Instances, wanted: &dyn Fn() -> bool) -> Option<Self> {
         let mut geometry = Self::default();
         let (packed, holes) = geometry.pack(parts);
+        let indices = instances.number(&geometry.ids);
         let unplaced = Slot { kind: PrimitiveKind::Plane, block: u32::MAX, place: 0 };
         geometry.slots = vec![unplaced; packed.len()];
 
         let (planes, finite): (Vec<u32>, Vec<u32>) =
             (0..packed.len() as u32).partition(|&i| packed[i as usize].kind() == PrimitiveKind::Plane);
-        let boxes: Vec<Aabb> = finite.par_iter().map(|&i| packed[i as usize].bounds()).collect();
-        let kinds: Vec<PrimitiveKind> = finite.par_iter().map(|&i| packed[i as usize].kind()).collect();
+        let mut boxes: Vec<Aabb> = finite.par_iter().map(|&i| packed[i as usize].bounds()).collect();
+        let mut kinds: Vec<_> = finite.par_iter().map(|&i| Some(packed[i as usize].kind())).collect();
+        boxes.extend(instances.placed.iter().map(|instance| instance.bounds));
+        kinds.resize(boxes.len(), None);
         geometry.bounds = boxes.iter().fold(Aabb::EMPTY, |a, &b| a.union(b));
-        let (bvh, mut leaves) = bvh::build(&boxes, &kinds, wanted).unzip();
+        let (mut bvh, mut leaves) = bvh::build(&boxes, &kinds, wanted).unzip();
         if !wanted() {
             return None;
         }
@@ -229,13 +258,19 @@ impl Geometry {
             leaf.rename(&finite);
         }
         leaves.extend(planes.chunks(BLOCK).map(|members| LeafMembers::new(PrimitiveKind::Plane, members)));
-        geometry.fill_blocks(leaves, &packed);
+        geometry.fill_blocks(leaves, &packed, &indices);
         geometry.holes = vec![Holes::default(); geometry.cutouts.len() * BLOCK];
         for (primitive, holes) in holes {
             let slot = geometry.slots[primitive as usize];
             geometry.holes[slot.block as usize * BLOCK + usize::from(slot.place)] = holes;
         }
-        geometry.bvh = bvh.filter(|bvh| bvh.leaves >= MIN_BLOCKS_FOR_TREE);
+        for child in bvh.iter_mut().flat_map(|bvh| &mut bvh.nodes).flat_map(|node| &mut node.children) {
+            if let Child::Instance(number) = child {
+                *number -= finite.len() as u32;
+            }
+        }
+        geometry.bvh = bvh.filter(|bvh| bvh.leaves >= MIN_BLOCKS_FOR_TREE || !instances.is_empty());
+        geometry.instances = instances;
         Some(geometry)
     }
 
@@ -262,22 +297,91 @@ impl Geometry {
 
     /// How many primitives there are.
     pub fn len(&self) -> usize {
-        self.ids.len()
+        self.ids.len() + self.instances.triangles()
     }
 
     /// Whether there is nothing to hit.
     pub fn is_empty(&self) -> bool {
-        self.ids.is_empty()
+        self.ids.is_empty() && self.instances.is_empty()
+    }
+
+    /// How many indices primitives take.
+    pub fn indices(&self) -> usize {
+        self.ids.len() + self.instances.indices()
+    }
+
+    /// The identity of a primitive; `None` for [`NO_PRIMITIVE`].
+    #[inline(always)]
+    pub fn id(&self, primitive: PrimitiveIndex) -> Option<PrimitiveId> {
+        match self.instances.find(primitive) {
+            Home::Own(own) => self.ids.get(own as usize).copied(),
+            Home::Shared(triangle) => Some(self.instances.id(triangle)),
+        }
+    }
+
+    /// The object that a primitive belongs to.
+    #[inline(always)]
+    pub fn object_of(&self, primitive: PrimitiveIndex) -> u32 {
+        match self.instances.find(primitive) {
+            Home::Own(own) => self.ids[own as usize].object,
+            Home::Shared(triangle) => self.instances.id(triangle).object,
+        }
+    }
+
+    /// Where a primitive lies; those of shared meshes lie in no block.
+    #[inline(always)]
+    pub fn slot(&self, primitive: PrimitiveIndex) -> Slot {
+        match self.instances.find(primitive) {
+            Home::Own(own) => self.slots[own as usize],
+            Home::Shared(_) => Slot::SHARED,
+        }
+    }
+
+    /// Whether a primitive lies in a plane; false for [`NO_PRIMITIVE`].
+    pub fn is_flat(&self, primitive: PrimitiveIndex) -> bool {
+        match self.instances.find(primitive) {
+            Home::Own(own) => self.slots.get(own as usize).is_some_and(|slot| slot.kind.is_flat()),
+            Home::Shared(_) => true,
+        }
+    }
+
+    /// The indices of an object's primitives.
+    pub fn indices_of(&self, object: u32) -> Range<PrimitiveIndex> {
+        self.instances.indices_of(object).unwrap_or_else(|| {
+            let first = self.ids.partition_point(|id| id.object < object);
+            let count = self.ids[first..].partition_point(|id| id.object == object);
+            let shared = self.instances.indices_before(object);
+            first as u32 + shared..(first + count) as u32 + shared
+        })
+    }
+
+    /// The kernel's fields of a triangle that lies in a shared mesh; 0 for others. Not inlined: few scenes have any.
+    #[inline(never)]
+    pub fn shared_fields(&self, primitive: PrimitiveIndex) -> [f32; 10] {
+        match self.instances.find(primitive) {
+            Home::Own(_) => [0.0; 10],
+            Home::Shared(triangle) => self.instances.fields(triangle),
+        }
+    }
+
+    /// The kernel's fields of a triangle, wherever it lies; `None` for other shapes.
+    #[inline]
+    pub fn triangle(&self, primitive: PrimitiveIndex) -> Option<[f32; 10]> {
+        let slot = self.slot(primitive);
+        slot.kind.is_triangle().then(|| match self.triangles_of(slot.kind).get(slot.block as usize) {
+            Some(block) => block.get(slot.place.into()),
+            None => self.shared_fields(primitive),
+        })
     }
 
     /// Unit normal and a point of the plane that a primitive lies in; `None` if it is not flat, or too small or too large
     /// for its normal to be computed so.
     pub fn plane_of(&self, primitive: PrimitiveIndex) -> Option<(Vec3, Vec3)> {
-        let slot = self.slots[primitive as usize];
+        let slot = self.slot(primitive);
         let (block, place) = (slot.block as usize, usize::from(slot.place));
         match slot.kind {
             PrimitiveKind::Triangle | PrimitiveKind::Cutout => {
-                let [ax, ay, az, bx, by, bz, cx, cy, cz, _] = self.triangles_of(slot.kind)[block].get(place);
+                let [ax, ay, az, bx, by, bz, cx, cy, cz, _] = self.triangle(primitive)?;
                 let [a, b, c] = [Vec3::new(ax, ay, az), Vec3::new(bx, by, bz), Vec3::new(cx, cy, cz)];
                 let normal = (b - a).cross(c - a);
                 let usable = f32::MIN_POSITIVE..f32::MAX;
@@ -299,13 +403,9 @@ impl Geometry {
     /// The corners of a triangle, in the kernel's order; 0 for other shapes.
     #[inline]
     pub fn corners_of(&self, primitive: PrimitiveIndex) -> [f32; 9] {
-        let slot = self.slots[primitive as usize];
         let mut corners = [0.0; 9];
-        if slot.kind.is_triangle() {
-            let block = &self.triangles_of(slot.kind)[slot.block as usize];
-            for (corner, field) in corners.iter_mut().zip(&block.fields) {
-                *corner = field[usize::from(slot.place)];
-            }
+        if let Some(fields) = self.triangle(primitive) {
+            corners.copy_from_slice(&fields[..9]);
         }
         corners
     }
@@ -322,8 +422,13 @@ impl Geometry {
     }
 
     /// What the corners of a triangle carry; `None` for most primitives. Found by halving: for a few look-ups.
-    pub fn attributes_of(&self, primitive: PrimitiveIndex) -> Option<&VertexAttributes> {
-        let found = self.attributes.binary_search_by_key(&primitive, |(index, _)| *index).ok()?;
-        Some(&self.attributes[found].1)
+    pub fn attributes_of(&self, primitive: PrimitiveIndex) -> Option<VertexAttributes> {
+        match self.instances.find(primitive) {
+            Home::Own(own) => {
+                let found = self.attributes.binary_search_by_key(&own, |(index, _)| *index).ok()?;
+                Some(self.attributes[found].1)
+            }
+            Home::Shared(triangle) => self.instances.attributes(triangle),
+        }
     }
 }

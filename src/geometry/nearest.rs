@@ -9,15 +9,15 @@ use super::{Geometry, PrimitiveKind};
 use glam::DVec3;
 
 /// The nearest point found so far.
-struct Nearest {
-    point: DVec3,
+pub(super) struct Nearest {
+    pub point: DVec3,
     /// Squared distance within which a surface is of interest.
-    within: f64,
+    pub within: f64,
     found: Option<DVec3>,
 }
 
 impl Nearest {
-    fn offer(&mut self, candidate: DVec3) {
+    pub fn offer(&mut self, candidate: DVec3) {
         let distance = candidate.distance_squared(self.point);
         if distance < self.within {
             self.within = distance;
@@ -57,6 +57,7 @@ impl Geometry {
             match child {
                 Child::None => {}
                 Child::Leaf(leaf) => self.offer_leaf(leaf, nearest),
+                Child::Instance(number) => self.instances.offer_nearest(number, nearest),
                 Child::Node(number) => {
                     let node = &bvh.nodes[number as usize];
                     let before = waiting.len();

@@ -7,15 +7,15 @@ use super::bvh::{Bvh, Child, Leaf, Node};
 use super::holes::Places;
 use super::primitive::{Cone, Cutout, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use super::traverse::{Pending, STACK};
-use super::{BLOCK, Block, Packet, PrimitiveKind, Rays, Search, SphereTerms, Visitor};
+use super::{BLOCK, Block, Packet, PrimitiveIndex, PrimitiveKind, Rays, Search, SphereTerms, Visitor};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 use glam::Vec3;
 
 /// One ray of a packet.
-struct Ray<S: Simd> {
-    lane: usize,
-    rays: Rays<f32x8<S>>,
+pub(super) struct Ray<S: Simd> {
+    pub lane: usize,
+    pub rays: Rays<f32x8<S>>,
     origin_plus: Vec3,
     origin_minus: Vec3,
     inverse: Vec3,
@@ -99,6 +99,10 @@ impl Search<'_> {
                     continue;
                 }
                 Child::Node(number) => &bvh.nodes[number as usize],
+                Child::Instance(number) => {
+                    self.visit_instance_by_ray(simd, number, ray, &mut stack[depth..], visitor);
+                    continue;
+                }
             };
             let (mut candidates, distances) = ray.enter_boxes(simd, node, limit);
             let bottom = depth;
@@ -109,6 +113,25 @@ impl Search<'_> {
                 Pending { child: node.children[place], near }.insert(stack, bottom..depth);
                 depth += 1;
             }
+        }
+    }
+}
+
+/// Shows `visitor` the hits in a bit set that a lane has on eight primitives.
+#[inline(always)]
+pub(super) fn show<S: Simd, V: Visitor<S>>(
+    lane: usize,
+    mut hits: u64,
+    t: f32x8<S>,
+    primitives: &[PrimitiveIndex; BLOCK],
+    visitor: &mut V,
+) {
+    while hits != 0 {
+        let place = hits.trailing_zeros() as usize;
+        hits &= hits - 1;
+        let primitive = primitives[place];
+        if t[place] <= visitor.lane_limit(lane) && visitor.accepts(primitive) {
+            visitor.lane_hit(lane, t[place], primitive);
         }
     }
 }
@@ -150,15 +173,7 @@ macro_rules! define_leaf_tests {
                             let t_min = visitor.lane_t_min(simd, ray.lane, indices);
                             let (mask, t) = test!($kernel, $blocks, self, simd, number, ray, t_min);
                             let used = (1_u64 << len) - 1;
-                            let mut hits = mask.to_bitmask() & used;
-                            while hits != 0 {
-                                let place = hits.trailing_zeros() as usize;
-                                hits &= hits - 1;
-                                let primitive = indices[place];
-                                if t[place] <= visitor.lane_limit(ray.lane) && visitor.accepts(primitive) {
-                                    visitor.lane_hit(ray.lane, t[place], primitive);
-                                }
-                            }
+                            show(ray.lane, mask.to_bitmask() & used, t, indices, visitor);
                         })+
                     },
                 );

@@ -3,7 +3,7 @@
 use super::bvh::{Bvh, Child, Leaf, WIDTH};
 use super::primitive::{Cone, Cutout, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use super::visitor::Mask;
-use super::{Block, Geometry, Packet, PrimitiveIndex, PrimitiveKind, Rays, Visitor};
+use super::{Block, Geometry, Packet, PrimitiveIndex, PrimitiveKind, Rays, Slot, Visitor};
 use crate::math::V3;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -85,7 +85,16 @@ impl<'a> Search<'a> {
                     self.visit_tree_by_rays(simd, bvh, packet, &mut stack.0, visitor);
                 }
             }
-            _ => self.visit_all(simd, PrimitiveKind::ALL, packet, visitor),
+            _ => self.visit_everything(simd, packet, visitor),
+        }
+    }
+
+    /// Tests every primitive, those of instances included.
+    #[inline(always)]
+    fn visit_everything<S: Simd, V: Visitor<S>>(&self, simd: S, packet: &Packet<S>, visitor: &mut V) {
+        self.visit_all(simd, PrimitiveKind::ALL, packet, visitor);
+        for number in 0..self.geometry.instances.placed.len() as u32 {
+            self.visit_instance(simd, number, packet, &mut [], visitor);
         }
     }
 
@@ -127,6 +136,10 @@ impl<'a> Search<'a> {
                     continue;
                 }
                 Child::Node(number) => &bvh.nodes[number as usize],
+                Child::Instance(number) => {
+                    self.visit_instance(simd, number, packet, &mut stack[depth..], visitor);
+                    continue;
+                }
             };
             let mut candidates = packet.may_enter(simd, node, limit);
             let bottom = depth;
@@ -144,7 +157,7 @@ impl<'a> Search<'a> {
             }
             if depth + WIDTH > STACK {
                 // Deeper than any tree of ours: give up the order, never a hit.
-                return self.visit_all(simd, PrimitiveKind::ALL, packet, visitor);
+                return self.visit_everything(simd, packet, visitor);
             }
         }
     }
@@ -243,7 +256,10 @@ impl Search<'_> {
         rays: &Rays<S::f32s>,
         visitor: &mut V,
     ) {
-        let slot = self.geometry.slots[primitive as usize];
+        let slot = self.geometry.slot(primitive);
+        if slot == Slot::SHARED {
+            return self.test_shared(simd, primitive, rays, visitor);
+        }
         let place = usize::from(slot.place);
         self.visit_places(simd, Leaf { kind: slot.kind, block: slot.block }, place..place + 1, rays, visitor);
     }

@@ -326,8 +326,7 @@ fn fill<T: Copy>(strip: &mut [T; TILE + 2], row: &[T], left: usize) {
 impl FilmTile {
     /// Keeps the objects that samples see.
     pub(super) fn store_objects(&mut self, frame: &Frame<'_>, seen: &[Seen]) {
-        let object_of =
-            |primitive: u32| frame.scene.geometry.ids.get(primitive as usize).map_or(u32::MAX, |id| id.object);
+        let object_of = |primitive: u32| frame.scene.geometry.id(primitive).map_or(u32::MAX, |id| id.object);
         self.refinement.objects.resize(self.width * self.height, u32::MAX);
         let (mut primitive, mut object) = (NO_PRIMITIVE, u32::MAX);
         for first in (0..TILE * TILE).step_by(PACKET) {

@@ -156,8 +156,8 @@ pub(super) fn surfaces_of_one<S: Simd>(
     t: S::f32s,
 ) -> Surfaces<S> {
     let geometry = &frame.scene.geometry;
-    let slot = geometry.slots[primitive as usize];
-    let point = surface_of_one(simd, geometry, slot, origin, direction, t);
+    let slot = geometry.slot(primitive);
+    let point = surface_of_one(simd, geometry, primitive, slot, origin, direction, t);
     let mut surfaces = Surfaces {
         point,
         shading_normal: point.normal,
@@ -165,7 +165,7 @@ pub(super) fn surfaces_of_one<S: Simd>(
         flat: if slot.kind.is_flat() { hits.active } else { 0 },
     };
     if frame.plan.vertex_attributes && slot.kind.is_triangle() {
-        let fields = geometry.triangles_of(slot.kind)[slot.block as usize].splat(simd, slot.place.into());
+        let fields = fields_of_one(simd, geometry, primitive, slot, geometry.triangles_of(slot.kind));
         surfaces.weights = Triangle::barycentric(&fields, &Rays::new(origin, direction));
         interpolate_normals(simd, frame, hits, &mut surfaces);
     }
@@ -232,7 +232,7 @@ fn interpolate_normals<S: Simd>(simd: S, frame: &Frame<'_>, hits: &Hits<'_>, sur
         simd,
         #[inline(always)]
         |primitive| {
-            let normals = frame.tables.attributes(geometry, primitive).and_then(|a| a.normals);
+            let normals = frame.tables.attributes(geometry, primitive, |a| a.normals).flatten();
             let [a, b, c] = normals.unwrap_or([Vec3::ZERO; 3]);
             [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z]
         },
@@ -259,10 +259,10 @@ struct Places {
 impl Places {
     #[inline(always)]
     fn new(geometry: &Geometry, hits: &Hits<'_>) -> Self {
-        let slot = geometry.slots[hits.primitives[hits.first()] as usize];
+        let slot = geometry.slot(hits.primitives[hits.first()]);
         let mut places = Self { slots: [slot; MOST_LANES], kinds: [slot.kind as u32; MOST_LANES] };
         for lane in hits.lanes() {
-            let slot = geometry.slots[hits.primitives[lane] as usize];
+            let slot = geometry.slot(hits.primitives[lane]);
             (places.slots[lane], places.kinds[lane]) = (slot, slot.kind as u32);
         }
         places
@@ -294,7 +294,7 @@ impl Group<'_> {
     fn fields<S: Simd, const N: usize>(&self, simd: S, lanes: u64, blocks: &[Block<N>]) -> [S::f32s; N] {
         let slots = &self.places.slots;
         let first = slots[self.first];
-        let mut fields: [S::f32s; N] = blocks[first.block as usize].splat(simd, first.place.into());
+        let mut fields = fields_of_one(simd, self.geometry, self.hits.primitives[self.first], first, blocks);
         let primitives = S::u32s::from_slice(simd, self.hits.primitives);
         let mut left = lanes & !primitives.simd_eq(self.hits.primitives[self.first]).to_bitmask();
         for _ in 1..FEW {
@@ -304,7 +304,13 @@ impl Group<'_> {
             let lane = left.trailing_zeros() as usize;
             let mask = primitives.simd_eq(self.hits.primitives[lane]);
             left &= !mask.to_bitmask();
-            let block = &blocks[slots[lane].block as usize];
+            let Some(block) = blocks.get(slots[lane].block as usize) else {
+                let own: [f32; N] = shared_fields(self.geometry, self.hits.primitives[lane]);
+                for (field, own) in fields.iter_mut().zip(own) {
+                    *field = mask.select(S::f32s::splat(simd, own), *field);
+                }
+                continue;
+            };
             let place = usize::from(slots[lane].place) % BLOCK;
             for (field, row) in fields.iter_mut().zip(&block.fields) {
                 *field = mask.select(S::f32s::splat(simd, row[place]), *field);
@@ -318,7 +324,13 @@ impl Group<'_> {
         while left != 0 {
             let lane = left.trailing_zeros() as usize % MOST_LANES;
             left &= left - 1;
-            let block = &blocks[slots[lane].block as usize];
+            let Some(block) = blocks.get(slots[lane].block as usize) else {
+                let own: [f32; N] = shared_fields(self.geometry, self.hits.primitives[lane]);
+                for (row, own) in gathered.iter_mut().zip(own) {
+                    row[lane] = own;
+                }
+                continue;
+            };
             let place = usize::from(slots[lane].place) % BLOCK;
             for (row, field) in gathered.iter_mut().zip(&block.fields) {
                 row[lane] = field[place];
@@ -329,6 +341,35 @@ impl Group<'_> {
         }
         fields
     }
+}
+
+/// The fields of the primitive in a slot, which is in one of the blocks or in none.
+#[inline(always)]
+fn fields_of_one<S: Simd, const N: usize>(
+    simd: S,
+    geometry: &Geometry,
+    primitive: PrimitiveIndex,
+    slot: Slot,
+    blocks: &[Block<N>],
+) -> [S::f32s; N] {
+    if let Some(block) = blocks.get(slot.block as usize) {
+        return block.splat(simd, slot.place.into());
+    }
+    let mut fields = [S::f32s::splat(simd, 0.0); N];
+    for (field, own) in fields.iter_mut().zip(shared_fields::<N>(geometry, primitive)) {
+        *field = S::f32s::splat(simd, own);
+    }
+    fields
+}
+
+/// The fields of a triangle of a shared mesh.
+#[cold]
+fn shared_fields<const N: usize>(geometry: &Geometry, primitive: PrimitiveIndex) -> [f32; N] {
+    let mut fields = [0.0; N];
+    for (field, own) in fields.iter_mut().zip(geometry.shared_fields(primitive)) {
+        *field = own;
+    }
+    fields
 }
 
 macro_rules! define_surface {
@@ -351,12 +392,17 @@ macro_rules! define_surface {
         /// The surfaces of the primitive in a slot.
         #[inline(always)]
         fn surface_of_one<S: Simd>(
-            simd: S, geometry: &Geometry, slot: Slot, origin: V3<S::f32s>, direction: V3<S::f32s>, t: S::f32s,
+            simd: S,
+            geometry: &Geometry,
+            primitive: PrimitiveIndex,
+            slot: Slot,
+            origin: V3<S::f32s>,
+            direction: V3<S::f32s>,
+            t: S::f32s,
         ) -> SurfacePoint<S::f32s> {
             match slot.kind {
                 $(PrimitiveKind::$kernel => {
-                    let fields: [S::f32s; $fields] =
-                        geometry.$blocks[slot.block as usize].splat(simd, slot.place.into());
+                    let fields = fields_of_one::<S, $fields>(simd, geometry, primitive, slot, &geometry.$blocks);
                     $kernel::surface(&fields, origin, direction, t)
                 })+
             }

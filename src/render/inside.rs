@@ -1,7 +1,7 @@
 //! Which transparent bodies hold the eye.
 
 use super::tables::Tables;
-use crate::geometry::{Geometry, PrimitiveKind};
+use crate::geometry::{Geometry, PrimitiveIndex, PrimitiveKind};
 use crate::scene::{Object, Scene};
 use glam::{DVec3, Vec3};
 
@@ -28,15 +28,14 @@ fn holds(geometry: &Geometry, object: u32, body: &Object, point: Vec3) -> bool {
     }
     // No special direction: it meets no edge of an axis-aligned box.
     let (origin, direction) = (point.as_dvec3(), DVec3::new(0.569_802_9, 0.601_137_4, 0.560_318_6).normalize());
-    let first = geometry.ids.partition_point(|id| id.object < object);
-    let last = geometry.ids.partition_point(|id| id.object <= object);
-    let leaving: i32 = (first..last).map(|primitive| leavings(geometry, primitive, origin, direction)).sum();
+    let leaving: i32 =
+        geometry.indices_of(object).map(|primitive| leavings(geometry, primitive, origin, direction)).sum();
     leaving > 0
 }
 
 /// How often a ray leaves a primitive's inside minus how often it enters it.
-fn leavings(geometry: &Geometry, primitive: usize, origin: DVec3, direction: DVec3) -> i32 {
-    let slot = geometry.slots[primitive];
+fn leavings(geometry: &Geometry, primitive: PrimitiveIndex, origin: DVec3, direction: DVec3) -> i32 {
+    let slot = geometry.slot(primitive);
     let (block, place) = (slot.block as usize, usize::from(slot.place));
     let vector =
         |fields: &[f32], at: usize| DVec3::new(fields[at].into(), fields[at + 1].into(), fields[at + 2].into());
@@ -56,7 +55,7 @@ fn leavings(geometry: &Geometry, primitive: usize, origin: DVec3, direction: DVe
             i32::from(vector(&fields, 0).dot(origin) < f64::from(fields[3]))
         }
         PrimitiveKind::Triangle | PrimitiveKind::Cutout => {
-            let fields = geometry.triangles_of(slot.kind)[block].get(place);
+            let Some(fields) = geometry.triangle(primitive) else { return 0 };
             let [a, b, c] = [0, 3, 6].map(|at| vector(&fields, at));
             let normal = (b - a).cross(c - a) * f64::from(fields[9]);
             let weights = [

@@ -38,7 +38,7 @@ impl<'a> OneMaterial<'a> {
     /// The material of a primitive.
     #[inline(always)]
     pub fn of(frame: &Frame<'a>, primitive: PrimitiveIndex) -> Self {
-        Self(&frame.tables.materials[frame.tables.material_of[primitive as usize] as usize])
+        Self(&frame.tables.materials[frame.tables.material_of(&frame.scene.geometry, primitive) as usize])
     }
 }
 
@@ -73,14 +73,15 @@ impl<'a, S: Simd> MixedMaterials<'a, S> {
     /// The materials of what was hit; something was.
     #[inline(always)]
     pub fn new(simd: S, frame: &Frame<'a>, hits: &Hits<'_>) -> Self {
-        let (table, material_of) = (&frame.tables.materials, &frame.tables.material_of);
-        let material = material_of[hits.primitives[hits.first()] as usize];
+        let (tables, geometry) = (&frame.tables, &frame.scene.geometry);
+        let table = &tables.materials;
+        let material = tables.material_of(geometry, hits.primitives[hits.first()]);
         let first = &table[material as usize];
         let mut materials = Self { first, others: [(first, Mask::<S>::splat(simd, false)); MOST_LANES], count: 0 };
         if hits.common.is_none() && table.len() > 1 {
             let mut numbers = [material; MOST_LANES];
             for lane in hits.lanes() {
-                numbers[lane] = material_of[hits.primitives[lane] as usize];
+                numbers[lane] = tables.material_of(geometry, hits.primitives[lane]);
             }
             let lanes = S::u32s::from_slice(simd, &numbers[..S::f32s::LEN]);
             let mut left = hits.active & !lanes.simd_eq(material).to_bitmask();

@@ -97,7 +97,9 @@ impl Plan {
             media: !tables.transparent_bodies.is_empty(),
             absorption: tables.transparent_bodies.iter().any(|&object| absorbs(object)),
             textures: tables.materials.iter().any(|m| m.textured),
-            vertex_attributes: !scene.geometry.attributes.is_empty() || !scene.geometry.extras.is_empty(),
+            vertex_attributes: !scene.geometry.attributes.is_empty()
+                || !scene.geometry.extras.is_empty()
+                || scene.geometry.instances.have_corner_data(),
             gradients: relief || scene.textures.iter().any(Texture::is_filtered),
             occlusion: tables.materials.iter().any(|m| m.maps.occlusion.is_some()),
             relief,
@@ -133,6 +135,7 @@ impl Plan {
                 format!("tree: on, {primitives} primitives are worth one"),
                 "tree: off, there are too few primitives for one (or it was switched off)",
             ),
+            instances(scene),
             say(
                 self.sphere_cache != SphereCache::Off,
                 "sphere terms: computed once for all primary rays, they share the eye".to_owned(),
@@ -231,4 +234,19 @@ impl Plan {
             format!("shading: {}", self.models()),
         ]
     }
+}
+
+/// What is stored once although it is placed often.
+fn instances(scene: &Scene) -> String {
+    let instances = &scene.geometry.instances;
+    if instances.is_empty() {
+        return "instances: off, no mesh is placed often enough for storing it once to save much memory".to_owned();
+    }
+    format!(
+        "instances: on, {} meshes are placed {} times and stored once: {} MB instead of about {} MB",
+        instances.meshes.len(),
+        instances.placed.len(),
+        instances.bytes() / 1_000_000,
+        instances.flattened_bytes() / 1_000_000,
+    )
 }

@@ -155,14 +155,14 @@ impl Transparent {
         if found.lanes == 0 {
             return found;
         }
-        let (ids, objects) = (&frame.scene.geometry.ids, &frame.scene.objects);
+        let (geometry, objects) = (&frame.scene.geometry, &frame.scene.objects);
         if let Some(primitive) = hits.common {
-            let object = ids[primitive as usize].object;
+            let object = geometry.object_of(primitive);
             found.objects = [object; MOST_LANES];
             found.bodies = if objects[object as usize].body { found.lanes } else { 0 };
         } else {
             for lane in bits(found.lanes) {
-                let object = ids[hits.primitives[lane] as usize].object;
+                let object = geometry.object_of(hits.primitives[lane]);
                 found.objects[lane] = object;
                 found.bodies |= u64::from(objects[object as usize].body) << lane;
             }

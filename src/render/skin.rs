@@ -127,7 +127,7 @@ impl<S: Simd> Skin<S> {
             simd,
             #[inline(always)]
             |primitive| {
-                let colors = frame.tables.extras(&frame.scene.geometry, primitive).map(|extras| extras.colors);
+                let colors = frame.tables.extras(&frame.scene.geometry, primitive, |extras| extras.colors);
                 let [a, b, c] = colors.unwrap_or([Vec4::ONE; 3]);
                 [a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w]
             },
@@ -154,8 +154,8 @@ impl<S: Simd> Skin<S> {
         sight: &Sight<S>,
         textured: u64,
     ) -> Self {
-        let ids = &frame.scene.geometry.ids;
-        let id = ids[hits.primitives[hits.first()] as usize];
+        let geometry = &frame.scene.geometry;
+        let Some(id) = geometry.id(hits.primitives[hits.first()]) else { return self };
         if hits.common.is_some() {
             let sides = Mask::<S>::splat(simd, id.primitive == 0);
             let object = Object { number: id.object, sides, members: textured };
@@ -163,8 +163,9 @@ impl<S: Simd> Skin<S> {
         }
         let (mut objects, mut parts) = ([id.object; MOST_LANES], [id.primitive; MOST_LANES]);
         for lane in hits.lanes() {
-            let id = ids[hits.primitives[lane] as usize];
-            (objects[lane], parts[lane]) = (id.object, id.primitive);
+            if let Some(id) = geometry.id(hits.primitives[lane]) {
+                (objects[lane], parts[lane]) = (id.object, id.primitive);
+            }
         }
         let lanes = S::u32s::from_slice(simd, &objects[..S::f32s::LEN]);
         let sides = S::u32s::from_slice(simd, &parts[..S::f32s::LEN]).simd_eq(0);

@@ -1,6 +1,6 @@
 //! What shading reads of a scene, flattened for gathering into lanes. Made once a scene.
 
-use crate::geometry::{Geometry, Opaque, PrimitiveIndex, VertexAttributes, VertexExtras};
+use crate::geometry::{Geometry, Home, Opaque, PrimitiveIndex, SharedMesh, VertexAttributes, VertexExtras};
 use crate::scene::material::{Lookup, Model, Relief, Scaled};
 use crate::scene::{Material, Scene};
 use glam::{Vec3, Vec4};
@@ -197,9 +197,11 @@ pub struct Tables {
     pub generation: Option<u64>,
     /// As the scene's materials.
     pub materials: Vec<FlatMaterial>,
-    /// The material of each primitive.
-    pub material_of: Vec<u32>,
-    /// Where the attributes of each primitive lie, or [`NOTHING`]; empty where none carries any.
+    /// The material of each primitive that is not part of an instance.
+    materials_of: Vec<u32>,
+    /// The material of each instance.
+    materials_of_instances: Vec<u32>,
+    /// Where the attributes of each primitive of the former lie, or [`NOTHING`]; empty where none carries any.
     attributes_of: Vec<u32>,
     /// Where the extras of each primitive lie, in the same way.
     extras_of: Vec<u32>,
@@ -207,7 +209,7 @@ pub struct Tables {
     pub tangents: bool,
     /// Whether any triangle carries colours.
     pub vertex_colors: bool,
-    /// For each primitive whether it blocks all light; empty where every one does.
+    /// For each primitive, those of instances included, whether it blocks all light; empty where every one does.
     pub opaque: Vec<bool>,
     /// Objects that bound a transparent body.
     pub transparent_bodies: Vec<u32>,
@@ -221,7 +223,7 @@ impl Tables {
         let material_of = |object: u32| &scene.materials[scene.objects[object as usize].material as usize];
         let transparent = scene.objects.iter().any(|o| scene.materials[o.material as usize].is_transparent());
         let opaque = if transparent {
-            scene.geometry.ids.iter().map(|id| !material_of(id.object).is_transparent()).collect()
+            opaque(&scene.geometry, |object| !material_of(object).is_transparent())
         } else {
             Vec::new()
         };
@@ -230,16 +232,21 @@ impl Tables {
             .collect();
         let materials: Vec<FlatMaterial> = scene.materials.iter().map(FlatMaterial::new).collect();
         let mirrors = |object: u32| materials[scene.objects[object as usize].material as usize].secondary;
-        let primitives = scene.geometry.slots.iter().zip(&scene.geometry.ids);
+        let Geometry { slots, ids, instances, .. } = &*scene.geometry;
         let flat_mirrors = materials.iter().any(|material| material.secondary)
-            && primitives.into_iter().any(|(slot, id)| slot.kind.is_flat() && mirrors(id.object));
+            && (slots.iter().zip(ids).any(|(slot, id)| slot.kind.is_flat() && mirrors(id.object))
+                || instances.placed.iter().any(|instance| mirrors(instance.object)));
+        let material_number = |object: u32| scene.objects[object as usize].material;
         Self {
             generation: Some(scene.generation),
-            material_of: scene.geometry.ids.iter().map(|id| scene.objects[id.object as usize].material).collect(),
-            tangents: scene.geometry.extras.iter().any(|(_, extras)| extras.tangents != [Vec4::ZERO; 3]),
-            vertex_colors: scene.geometry.extras.iter().any(|(_, extras)| extras.colors != [Vec4::ONE; 3]),
-            attributes_of: places(scene.geometry.len(), &scene.geometry.attributes),
-            extras_of: places(scene.geometry.len(), &scene.geometry.extras),
+            materials_of: ids.iter().map(|id| material_number(id.object)).collect(),
+            materials_of_instances: instances.placed.iter().map(|own| material_number(own.object)).collect(),
+            tangents: scene.geometry.extras.iter().any(|(_, extras)| extras.tangents != [Vec4::ZERO; 3])
+                || instances.meshes.iter().any(SharedMesh::has_tangents),
+            vertex_colors: scene.geometry.extras.iter().any(|(_, extras)| extras.colors != [Vec4::ONE; 3])
+                || instances.meshes.iter().any(SharedMesh::has_colors),
+            attributes_of: places(ids.len(), &scene.geometry.attributes),
+            extras_of: places(ids.len(), &scene.geometry.extras),
             materials,
             opaque,
             transparent_bodies,
@@ -247,24 +254,67 @@ impl Tables {
         }
     }
 
-    /// What the corners of a primitive carry, in the kernel's order.
-    #[inline]
-    pub fn attributes<'a>(&self, geometry: &'a Geometry, primitive: PrimitiveIndex) -> Option<&'a VertexAttributes> {
-        let place = *self.attributes_of.get(primitive as usize)?;
-        geometry.attributes.get(place as usize).map(|(_, attributes)| attributes)
+    /// The material of a primitive.
+    #[inline(always)]
+    pub fn material_of(&self, geometry: &Geometry, primitive: PrimitiveIndex) -> u32 {
+        match geometry.instances.find(primitive) {
+            Home::Own(own) => self.materials_of[own as usize],
+            Home::Shared(triangle) => self.materials_of_instances[triangle.instance as usize],
+        }
     }
 
-    /// What the corners of a primitive carry besides, in the kernel's order.
-    #[inline]
-    pub fn extras<'a>(&self, geometry: &'a Geometry, primitive: PrimitiveIndex) -> Option<&'a VertexExtras> {
-        let place = *self.extras_of.get(primitive as usize)?;
-        geometry.extras.get(place as usize).map(|(_, extras)| extras)
+    /// Of what the corners of a primitive carry, in the kernel's order, what is to be picked.
+    #[inline(always)]
+    pub fn attributes<T>(
+        &self,
+        geometry: &Geometry,
+        primitive: PrimitiveIndex,
+        pick: impl Fn(&VertexAttributes) -> T,
+    ) -> Option<T> {
+        match geometry.instances.find(primitive) {
+            Home::Own(own) => {
+                let place = *self.attributes_of.get(own as usize)?;
+                geometry.attributes.get(place as usize).map(|(_, attributes)| pick(attributes))
+            }
+            Home::Shared(triangle) => geometry.instances.attributes(triangle).map(|attributes| pick(&attributes)),
+        }
+    }
+
+    /// Of what they carry besides, in the same order, what is to be picked.
+    #[inline(always)]
+    pub fn extras<T>(
+        &self,
+        geometry: &Geometry,
+        primitive: PrimitiveIndex,
+        pick: impl Fn(&VertexExtras) -> T,
+    ) -> Option<T> {
+        match geometry.instances.find(primitive) {
+            Home::Own(own) => {
+                let place = *self.extras_of.get(own as usize)?;
+                geometry.extras.get(place as usize).map(|(_, extras)| pick(extras))
+            }
+            Home::Shared(triangle) => geometry.instances.extras(triangle).map(|extras| pick(&extras)),
+        }
     }
 
     /// What blocks all light.
     pub fn opaque(&self) -> Opaque<'_> {
         if self.opaque.is_empty() { Opaque::All } else { Opaque::Listed(&self.opaque) }
     }
+}
+
+/// Whether each primitive blocks all light, by the object that it belongs to.
+fn opaque(geometry: &Geometry, blocks: impl Fn(u32) -> bool) -> Vec<bool> {
+    let mut opaque = Vec::with_capacity(geometry.indices());
+    let mut own = geometry.ids.iter().map(|id| id.object).peekable();
+    for instance in &geometry.instances.placed {
+        while let Some(object) = own.next_if(|&object| object < instance.object) {
+            opaque.push(blocks(object));
+        }
+        opaque.resize(opaque.len() + instance.indices().len(), blocks(instance.object));
+    }
+    opaque.extend(own.map(blocks));
+    opaque
 }
 
 /// Where in a list each of `count` primitives has its entry, or [`NOTHING`]; empty if the list is.

@@ -94,8 +94,8 @@ impl<S: Simd> Place<S> {
             #[inline(always)]
             |primitive| {
                 let coordinates = match set {
-                    0 => tables.attributes(geometry, primitive).and_then(|attributes| attributes.uvs),
-                    _ => tables.extras(geometry, primitive).map(|extras| extras.uvs1),
+                    0 => tables.attributes(geometry, primitive, |attributes| attributes.uvs).flatten(),
+                    _ => tables.extras(geometry, primitive, |extras| extras.uvs1),
                 };
                 let [a, b, c] = coordinates.unwrap_or([Vec2::ZERO; 3]);
                 [a.x, a.y, b.x, b.y, c.x, c.y]

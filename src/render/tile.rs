@@ -236,7 +236,7 @@ impl Worker {
             let certificate = self.stats.stages_ms.certificate - certificate;
             self.stats.stages_ms.secondary += milliseconds_since(start) - certificate;
             if frame.plan.trails {
-                self.trails.note_hits(level, &self.rays, &frame.scene.geometry.ids);
+                self.trails.note_hits(level, &self.rays, &frame.scene.geometry);
             }
         }
     }
@@ -290,7 +290,7 @@ impl FilmTile {
         }
         for pixel in 0..self.width * self.height {
             let seen = &seen[sample_at(pixel % self.width, pixel / self.width) as usize];
-            let id = frame.scene.geometry.ids.get(seen.primitive as usize);
+            let id = frame.scene.geometry.id(seen.primitive);
             store(&mut self.depth, pixel, id.map_or(f32::INFINITY, |_| seen.t));
             store(&mut self.normal, pixel, seen.normal);
             store(&mut self.object, pixel, id.map_or(u32::MAX, |id| id.object));

@@ -3,7 +3,7 @@
 
 use super::queue::RayQueue;
 use super::samples::SAMPLES;
-use crate::geometry::PrimitiveId;
+use crate::geometry::Geometry;
 
 /// A sum over all that a sample's paths met: the order in which they met it does not matter.
 #[derive(Debug, Default)]
@@ -19,9 +19,9 @@ impl Trails {
     }
 
     /// Notes what the rays of a level below the first hit.
-    pub fn note_hits(&mut self, level: u32, rays: &RayQueue, ids: &[PrimitiveId]) {
+    pub fn note_hits(&mut self, level: u32, rays: &RayQueue, geometry: &Geometry) {
         for (&sample, &primitive) in rays.sample.iter().zip(&rays.primitive).take(rays.len()) {
-            let object = ids.get(primitive as usize).map_or(u32::MAX, |id| id.object);
+            let object = geometry.id(primitive).map_or(u32::MAX, |id| id.object);
             self.note(sample, [level, object]);
         }
     }

@@ -23,6 +23,7 @@ pub mod progress;
 pub mod texels;
 pub mod texture;
 
+pub use build::Instancing;
 pub use builtin::{builtin, nothing};
 pub use camera::Camera;
 pub use error::{SceneError, Warning};

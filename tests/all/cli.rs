@@ -127,6 +127,7 @@ fn wrong_usage_is_exit_2() {
         "bench scene.json --redraw -o out",
         "render --aov colour -o a.exr",
         "--aov depth",
+        "--terminal",
         "render scene.json --camera nobody",
         "render scene.json --eye 0,0,0 --look-at 0,0,0",
         "render --path walk.json --eye 1,2,3",

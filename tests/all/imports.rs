@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 /// The rooms from the ground up. A room may import those before it.
 const ROOMS: &[&str] = &["settings", "math", "geometry", "scene", "render", "picture", "measure", "app"];
 /// What only the window may know of.
-const WINDOW_CRATES: &[&str] = &["winit", "wgpu", "egui", "egui_winit", "egui_wgpu", "egui_plot", "notify", "rfd"];
+const WINDOW_CRATES: &[&str] =
+    &["winit", "wgpu", "egui", "egui_winit", "egui_wgpu", "egui_plot", "notify", "rfd", "termina"];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("the sources are there").map(|entry| entry.expect("readable").path());

@@ -15,6 +15,7 @@ mod flips;
 mod formats;
 mod gltf;
 mod imports;
+mod instancing;
 mod interpolation;
 mod maps;
 mod our_scenes;
@@ -33,6 +34,7 @@ mod stress;
 mod subsampling;
 mod surfaces;
 mod temporary;
+mod terminal;
 #[path = "../common/tracer/mod.rs"]
 mod tracer;
 mod tune;

@@ -16,7 +16,7 @@ use raywalk::scene::files::Files;
 use raywalk::scene::light::{Falloff, LightKind};
 use raywalk::scene::material::{Alpha, ColorSource, Lookup, Model, Relief, Scaled};
 use raywalk::scene::texture::{Blending, Sampler, Wrap};
-use raywalk::scene::{Camera, Light, Limits, NamedCamera, Scene};
+use raywalk::scene::{Camera, Light, LoadOptions, NamedCamera, Scene};
 use raywalk::settings::Settings;
 use std::io::Cursor;
 use std::path::Path;
@@ -68,8 +68,8 @@ fn square() -> MeshDesc {
 }
 
 fn built(scene: SceneDesc) -> Scene {
-    let limits = Limits::default();
-    let mut builder = SceneBuilder::new(Path::new("surfaces"), "made", Files::embedded(&[], &limits), limits);
+    let options = LoadOptions::default();
+    let mut builder = SceneBuilder::new(Path::new("surfaces"), "made", Files::embedded(&[], &options.limits), &options);
     builder.add(scene, &mut Warnings::default()).unwrap();
     builder.finish().expect("nobody cancels")
 }

@@ -13,6 +13,9 @@ const WIDTH: f32 = 560.0;
 /// Most of the window's height that the help takes.
 const SHARE: f32 = 0.86;
 
+/// In windows with less room than this, in points, there is nothing to read in.
+const LEAST_ROOM: egui::Vec2 = egui::vec2(200.0, 140.0);
+
 /// What each promise means.
 const PROMISES: [(Promise, &str); 3] = [
     (Promise::SamePixels, "every value of every channel keeps its bits, against the preset exact"),
@@ -73,6 +76,9 @@ const TOPICS: [(&str, &str); 8] = [
 /// Draws the window; asks to close it when its cross is clicked.
 pub fn show(ui: &Ui, labels: &Labels, changes: &mut Vec<Change>) {
     let room = ui.ctx().content_rect().size();
+    if room.x < LEAST_ROOM.x || room.y < LEAST_ROOM.y {
+        return;
+    }
     let mut open = true;
     Window::new("Help")
         .open(&mut open)

@@ -27,7 +27,7 @@ impl Search<'_> {
                 self.list_all(simd, &[PrimitiveKind::Plane], beam, candidates)
                     && (candidates.blocked || self.list_tree(simd, bvh, beam, candidates, &mut stack.0))
             }
-            _ => self.list_all(simd, PrimitiveKind::ALL, beam, candidates),
+            _ => self.geometry.instances.is_empty() && self.list_all(simd, PrimitiveKind::ALL, beam, candidates),
         }
     }
 
@@ -87,6 +87,8 @@ impl Search<'_> {
                             continue;
                         }
                         Child::Node(number) => &bvh.nodes[number as usize],
+                        // What is in it has no place in a list: its rays are to find their own way.
+                        Child::Instance(_) => return false,
                     };
                     let mut outside = candidates.cover.not_behind.excludes(simd, node);
                     for wall in &walls {

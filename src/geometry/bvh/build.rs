@@ -50,9 +50,12 @@ impl LeafMembers {
     }
 }
 
-/// Builds a tree over boxes, `None` if there are none or it is no longer `wanted`. Says also what its leaves hold, as indices of boxes; leaves of
-/// a type are numbered in this order.
-pub fn build(boxes: &[Aabb], kinds: &[PrimitiveKind], wanted: &dyn Fn() -> bool) -> Option<(Bvh, Vec<LeafMembers>)> {
+/// What is in a box: a primitive of some type, or an instance.
+type Kind = Option<PrimitiveKind>;
+
+/// Builds a tree over boxes, `None` if there are none or it is no longer `wanted`. Says also what its leaves hold, as indices
+/// of boxes; leaves of a type are numbered in this order. Instances are named by the indices of their boxes.
+pub fn build(boxes: &[Aabb], kinds: &[Kind], wanted: &dyn Fn() -> bool) -> Option<(Bvh, Vec<LeafMembers>)> {
     if boxes.is_empty() {
         return None;
     }
@@ -91,7 +94,7 @@ struct Pending {
 }
 
 /// Collapses a binary tree: its upper part first, then the subtrees below that side by side.
-fn collapse(binary: &Bvh2, kinds: &[PrimitiveKind]) -> Wide {
+fn collapse(binary: &Bvh2, kinds: &[Kind]) -> Wide {
     let mut top = Wide { nodes: vec![Node::EMPTY], ..Wide::default() };
     let mut pending = std::collections::VecDeque::from([Pending { subtree: 0, wide: 0, depth: 0 }]);
     while pending.len() < TASKS {
@@ -110,7 +113,7 @@ fn collapse(binary: &Bvh2, kinds: &[PrimitiveKind]) -> Wide {
 }
 
 /// The wide tree of one subtree.
-fn collapse_below(binary: &Bvh2, kinds: &[PrimitiveKind], subtree: u32) -> Wide {
+fn collapse_below(binary: &Bvh2, kinds: &[Kind], subtree: u32) -> Wide {
     let mut wide = Wide { nodes: vec![Node::EMPTY], ..Wide::default() };
     // No recursion, however deep the tree.
     let mut pending = vec![Pending { subtree, wide: 0, depth: 0 }];
@@ -122,7 +125,7 @@ fn collapse_below(binary: &Bvh2, kinds: &[PrimitiveKind], subtree: u32) -> Wide 
 
 impl Wide {
     /// Fills a node: opens the subtree it stands for, the largest box first, until there are eight.
-    fn expand(&mut self, binary: &Bvh2, kinds: &[PrimitiveKind], of: Pending, mut pend: impl FnMut(Pending)) {
+    fn expand(&mut self, binary: &Bvh2, kinds: &[Kind], of: Pending, mut pend: impl FnMut(Pending)) {
         self.depth = self.depth.max(of.depth + 1);
         let mut children = [Opened::default(); WIDTH];
         children[0] = Opened::new(binary, kinds, of.subtree);
@@ -139,7 +142,10 @@ impl Wide {
         }
         for (place, &Opened { subtree, leaf, .. }) in children[..count].iter().enumerate() {
             let child = if leaf {
-                Child::Leaf(self.add_leaf(members(binary, kinds, subtree)))
+                match members(binary, kinds, subtree) {
+                    Members::Primitives(leaf) => Child::Leaf(self.add_leaf(leaf)),
+                    Members::Instance(number) => Child::Instance(number),
+                }
             } else {
                 let wide = self.nodes.len() as u32;
                 self.nodes.push(Node::EMPTY);
@@ -166,7 +172,7 @@ impl Wide {
         let mut moved = part.nodes.into_iter().map(|mut node| {
             for child in &mut node.children {
                 match child {
-                    Child::None => {}
+                    Child::None | Child::Instance(_) => {}
                     Child::Node(number) => *number += first,
                     Child::Leaf(leaf) => leaf.block += blocks_before[leaf.kind as usize],
                 }
@@ -195,7 +201,7 @@ struct Opened {
 }
 
 impl Opened {
-    fn new(binary: &Bvh2, kinds: &[PrimitiveKind], subtree: u32) -> Self {
+    fn new(binary: &Bvh2, kinds: &[Kind], subtree: u32) -> Self {
         let area = binary.nodes[subtree as usize].aabb().half_area();
         let leaf = fits_a_block(binary, subtree) && Merged::of(binary, kinds, subtree).leaf;
         Self { subtree, area, leaf }
@@ -231,19 +237,19 @@ struct Merged {
     /// Expected cost of a ray that hits its box, times the box's area.
     cost: f32,
     primitives: u32,
-    /// The one type of its primitives, if they are of one type.
-    kind: Option<PrimitiveKind>,
+    /// The one type of its primitives, if they are of one type. An instance has none, and is like nothing else.
+    kind: Kind,
     /// Whether it is cheapest as one leaf.
     leaf: bool,
 }
 
 impl Merged {
     /// Recursion ends within [`BLOCK`] levels: each holds a primitive more.
-    fn of(binary: &Bvh2, kinds: &[PrimitiveKind], subtree: u32) -> Self {
+    fn of(binary: &Bvh2, kinds: &[Kind], subtree: u32) -> Self {
         let node = &binary.nodes[subtree as usize];
         let area = node.aabb().half_area();
         if node.is_leaf() {
-            let kind = Some(kinds[node.first_index as usize]);
+            let kind = kinds[node.first_index as usize];
             return Self { cost: area * (LEAF_COST + PRIMITIVE_COST), primitives: 1, kind, leaf: true };
         }
         let [left, right] = [0, 1].map(|side| Self::of(binary, kinds, node.first_index + side));
@@ -256,8 +262,14 @@ impl Merged {
     }
 }
 
-/// The primitives below a subtree that becomes a leaf, in ascending order.
-fn members(binary: &Bvh2, kinds: &[PrimitiveKind], subtree: u32) -> LeafMembers {
+/// What a leaf is made of.
+enum Members {
+    Primitives(LeafMembers),
+    Instance(u32),
+}
+
+/// What is below a subtree that becomes a leaf, in ascending order.
+fn members(binary: &Bvh2, kinds: &[Kind], subtree: u32) -> Members {
     let (mut found, mut count) = ([0; BLOCK], 0);
     let mut gather = |index| {
         found[count] = index;
@@ -265,7 +277,10 @@ fn members(binary: &Bvh2, kinds: &[PrimitiveKind], subtree: u32) -> LeafMembers 
     };
     visit_primitives(binary, subtree, &mut gather);
     found[..count].sort_unstable();
-    LeafMembers::new(kinds[found[0] as usize], &found[..count])
+    match kinds[found[0] as usize] {
+        Some(kind) => Members::Primitives(LeafMembers::new(kind, &found[..count])),
+        None => Members::Instance(found[0]),
+    }
 }
 
 fn visit_primitives(binary: &Bvh2, subtree: u32, visit: &mut impl FnMut(u32)) {
@@ -297,7 +312,7 @@ mod tests {
     }
 
     /// Every primitive is in one leaf, within all boxes above it; each node and each leaf stands once.
-    fn check(bvh: &Bvh, leaves: &[LeafMembers], boxes: &[Aabb], kinds: &[PrimitiveKind]) {
+    fn check(bvh: &Bvh, leaves: &[LeafMembers], boxes: &[Aabb], kinds: &[Kind]) {
         let contains = |outer: &Aabb, inner: &Aabb| outer.union(*inner) == *outer;
         let numbered = |leaf: &Leaf| leaves.iter().filter(|l| l.kind == leaf.kind).nth(leaf.block as usize);
         let (mut found, mut nodes) = (vec![0; boxes.len()], 0);
@@ -314,9 +329,14 @@ mod tests {
                     Child::Leaf(leaf) => {
                         for &member in numbered(leaf).expect("its leaf is there").members() {
                             assert!(contains(&own, &boxes[member as usize]));
-                            assert_eq!(kinds[member as usize], leaf.kind);
+                            assert_eq!(kinds[member as usize], Some(leaf.kind));
                             found[member as usize] += 1;
                         }
+                    }
+                    Child::Instance(number) => {
+                        assert!(contains(&own, &boxes[*number as usize]));
+                        assert_eq!(kinds[*number as usize], None);
+                        found[*number as usize] += 1;
                     }
                 }
                 assert!(matches!(child, Child::None) || contains(&bounds, &own));
@@ -328,10 +348,11 @@ mod tests {
     }
 
     #[test]
-    fn every_primitive_is_in_one_leaf_of_its_kind() {
+    fn every_primitive_is_in_one_leaf_of_its_kind_and_instances_are_alone() {
         for count in [1, 2, 7, 8, 9, 65, 3000] {
             for (_, boxes) in awkward(count) {
-                let kinds: Vec<_> = (0..count).map(|i| PrimitiveKind::ALL[i % 3 % PrimitiveKind::ALL.len()]).collect();
+                let kind = |i: usize| (i % 5 < 4).then(|| PrimitiveKind::ALL[i % 3 % PrimitiveKind::ALL.len()]);
+                let kinds: Vec<_> = (0..count).map(kind).collect();
                 let (bvh, leaves) = build(&boxes, &kinds, &|| true).expect("there are boxes");
                 check(&bvh, &leaves, &boxes, &kinds);
             }
@@ -343,7 +364,7 @@ mod tests {
     #[test]
     fn awkward_boxes_make_no_deep_tree() {
         for (name, boxes) in awkward(6000) {
-            let kinds = vec![PrimitiveKind::Triangle; boxes.len()];
+            let kinds = vec![Some(PrimitiveKind::Triangle); boxes.len()];
             let clustered = collapse(&cluster(&boxes), &kinds).depth;
             assert!(clustered <= 32, "{name}: {clustered} levels");
             let (bvh, _) = build(&boxes, &kinds, &|| true).expect("there are boxes");
@@ -370,7 +391,8 @@ mod tests {
     #[test]
     fn coincident_primitives_fill_their_blocks() {
         let (_, boxes) = &awkward(4096)[0];
-        let (bvh, _) = build(boxes, &vec![PrimitiveKind::Sphere; boxes.len()], &|| true).expect("there are boxes");
+        let (bvh, _) =
+            build(boxes, &vec![Some(PrimitiveKind::Sphere); boxes.len()], &|| true).expect("there are boxes");
         assert_eq!(bvh.leaves, boxes.len() / BLOCK);
     }
 }

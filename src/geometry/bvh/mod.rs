@@ -29,6 +29,8 @@ pub enum Child {
     Node(u32),
     /// A block of primitives.
     Leaf(Leaf),
+    /// An instance of a mesh that has a tree of its own.
+    Instance(u32),
 }
 
 /// Eight boxes, coordinate by coordinate, and what is in them.

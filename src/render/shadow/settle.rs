@@ -152,7 +152,7 @@ fn lie_beside<S: Simd>(
                 }
             }
             // Rays to a curved patch do not end on a plane: of it only the patch's own surface is known to be no hindrance.
-            if !geometry.slots.get(source as usize).is_some_and(|slot| slot.kind.is_flat()) {
+            if !geometry.is_flat(source) {
                 return candidates.are_only(source);
             }
             candidates.lie_beside(simd, &judge.points(V3::<f32x8<S>>::load(simd, &x, &y, &z)), source)

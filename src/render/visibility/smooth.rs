@@ -149,8 +149,8 @@ impl Smooth {
                 let cell = block * CELLS_PER_BLOCK + at;
                 let is_certain = worker.certain_cells >> cell & 1 == 1;
                 if let Some(primitive) = common_primitive(area, is_certain, &worker.rays.primitive) {
-                    let material = &tables.materials[tables.material_of[primitive as usize] as usize];
-                    if material.is_uneven() || tables.extras(&frame.scene.geometry, primitive).is_some() {
+                    let material = &tables.materials[tables.material_of(&frame.scene.geometry, primitive) as usize];
+                    if material.is_uneven() || tables.extras(&frame.scene.geometry, primitive, |_| ()).is_some() {
                         continue;
                     }
                     let paints = paints(material);
@@ -225,7 +225,7 @@ impl Smooth {
 
 /// Whether a patch's surface is flat enough for the light in its middle to tell of all of it.
 fn is_flat_enough(frame: &Frame<'_>, patch: &Patch, rays: &RayQueue) -> bool {
-    if frame.scene.geometry.slots[patch.primitive as usize].kind.is_flat() {
+    if frame.scene.geometry.is_flat(patch.primitive) {
         return true;
     }
     let point = |pixel: usize| {

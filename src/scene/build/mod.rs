@@ -12,16 +12,19 @@ mod object;
 mod parts;
 mod placement;
 pub mod probe;
+mod sharing;
 
 pub use bounds::finite_bounds;
+pub use sharing::Instancing;
 
 use super::desc::map::shortened;
 use super::desc::problem::{At, Outcome, Problem, Warnings};
-use super::desc::{ImageDesc, MaterialDesc, NameRef, SceneDesc, TextureDesc, TextureKind, hint};
+use super::desc::{ImageDesc, MaterialDesc, NameRef, ObjectDesc, SceneDesc, TextureDesc, TextureKind, hint};
 use super::error::Warning;
 use super::files::{FileError, Files};
-use super::limits::Limits;
-use super::material::{Encoding, Model};
+use super::format::LoadOptions;
+use super::limits::{Limits, exceeded};
+use super::material::{Alpha, Encoding, Model};
 use super::texture::ImageTexture;
 use super::{Light, Material, NamedCamera, Object, Progress, RenderDefaults, Scene, Texture, next_generation};
 use crate::geometry::{Geometry, Part};
@@ -32,6 +35,7 @@ use image::ImageStore;
 use model::{Contents, Models};
 use placement::Placement;
 pub(super) use probe::Probe;
+use sharing::{Census, Sharing};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -60,6 +64,7 @@ pub struct SceneBuilder {
     holes: HoleMaps,
     models: Models,
     parts: Vec<Part>,
+    sharing: Sharing,
     objects: Vec<Object>,
     materials: Vec<Material>,
     /// The material of objects that name none, once there is one.
@@ -76,7 +81,7 @@ type Names = HashMap<String, u32>;
 
 impl SceneBuilder {
     /// An empty scene of the file `scene`, which is in `format`; it may read `files`.
-    pub fn new(scene: &Path, format: &'static str, files: Files, limits: Limits) -> Self {
+    pub fn new(scene: &Path, format: &'static str, files: Files, options: &LoadOptions) -> Self {
         let name = scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let path = files.locate(&name).unwrap_or_else(|_| scene.to_owned());
         Self {
@@ -84,8 +89,9 @@ impl SceneBuilder {
             format,
             models: Models::of(path, scene),
             progress: files.progress().clone(),
-            images: ImageStore::new(files, &limits),
-            limits,
+            images: ImageStore::new(files, &options.limits),
+            limits: options.limits.clone(),
+            sharing: Sharing::new(options.instancing),
             holes: HoleMaps::default(),
             parts: Vec::new(),
             objects: Vec::new(),
@@ -145,8 +151,26 @@ impl SceneBuilder {
         self.render = render;
         self.progress.begin("placing objects", 0);
         self.cameras.extend(cameras);
+        self.survey(&contents)?;
         self.lights.extend(contents.lights);
         self.add_objects(&contents.objects, &Placement::WORLD, &contents.materials, warnings)
+    }
+
+    /// Looks how often the file that is open places what, and decides which meshes are stored once.
+    fn survey(&mut self, contents: &Contents) -> Outcome<()> {
+        let may_have_holes = |object: &ObjectDesc| {
+            let named = object.material.as_ref().and_then(|name| contents.materials.get(&name.name));
+            named.is_some_and(|&material| matches!(self.materials[material as usize].alpha, Alpha::Mask(_)))
+        };
+        let census = Census::of(&contents.objects, may_have_holes);
+        self.sharing.decide(&census, self.models.times());
+        self.models.note(census);
+        match self.sharing.first_beyond(&contents.objects, self.limits.primitives, may_have_holes) {
+            None => Ok(()),
+            Some(at) => {
+                Err(Problem::new(at, format!("primitives: {}", exceeded("primitives", self.limits.primitives))))
+            }
+        }
     }
 
     /// Adds materials and the textures that they name; an image is read as colours or as data, as they use it.
@@ -210,7 +234,8 @@ impl SceneBuilder {
         self.models.forget();
         let start = Instant::now();
         self.progress.begin(format!("building the tree over {} shapes", self.parts.len()), 0);
-        let mut geometry = Geometry::build_while(std::mem::take(&mut self.parts), &|| !self.progress.is_cancelled())?;
+        let (parts, instances) = (std::mem::take(&mut self.parts), std::mem::take(&mut self.sharing).finish());
+        let mut geometry = Geometry::build_while(parts, instances, &|| !self.progress.is_cancelled())?;
         geometry.hole_maps = std::mem::take(&mut self.holes.maps);
         let build_ms = start.elapsed().as_secs_f64() * 1e3;
         self.progress.begin("looking around", 0);

@@ -4,6 +4,7 @@
 //! read once, however often it is placed.
 
 use super::placement::Placement;
+use super::sharing::Census;
 use super::{Names, SceneBuilder};
 use crate::scene::Light;
 use crate::scene::desc::map::shortened;
@@ -41,6 +42,10 @@ struct File {
     named: HashMap<String, usize>,
     /// What it holds, once it was read.
     contents: Option<Arc<Contents>>,
+    /// How often it is placed by the files that led to it first.
+    times: u64,
+    /// What it places how often.
+    census: Census,
     /// Whether it is being added: the file named last, or one that led there.
     is_open: bool,
 }
@@ -84,6 +89,16 @@ impl Models {
         self.files = Vec::new();
     }
 
+    /// How often the file that is open is placed.
+    pub fn times(&self) -> u64 {
+        self.files[self.open].times
+    }
+
+    /// Notes what the file that is open places how often.
+    pub fn note(&mut self, census: Census) {
+        self.files[self.open].census = census;
+    }
+
     /// Whether it is a model that is being read, and not the scene itself.
     pub fn is_reading(&self) -> bool {
         self.open != SCENE
@@ -93,7 +108,15 @@ impl Models {
     fn file(&mut self, path: PathBuf, shown: impl FnOnce() -> PathBuf) -> usize {
         *self.by_path.entry(path).or_insert_with_key(|path| {
             let (path, shown) = (path.clone(), shown());
-            self.files.push(File { path, shown, named: HashMap::new(), contents: None, is_open: false });
+            self.files.push(File {
+                path,
+                shown,
+                named: HashMap::new(),
+                contents: None,
+                times: 1,
+                census: Census::default(),
+                is_open: false,
+            });
             self.files.len() - 1
         })
     }
@@ -152,7 +175,10 @@ impl SceneBuilder {
         }
         let path = self.images.files().locate(&file.name).map_err(|error| unreadable(file, &error))?;
         let shown = including.shown.parent().unwrap_or(Path::new("")).join(&file.name);
+        let times = including.times.saturating_mul(including.census.models_of(&file.name)).max(1);
         let model = self.models.file(path, || shown);
+        let known = &mut self.models.files[model];
+        known.times = known.times.max(times);
         self.models.files[self.models.open].named.insert(file.name.clone(), model);
         Ok(model)
     }
@@ -174,6 +200,7 @@ impl SceneBuilder {
     /// Places what the model being read holds, and keeps it.
     pub(super) fn place_model(&mut self, contents: Contents, warnings: &mut Warnings) -> Outcome<()> {
         let placement = self.models.placement.clone();
+        self.survey(&contents)?;
         self.add_objects(&contents.objects, &placement, &contents.materials, warnings)?;
         self.models.files[self.models.open].contents = Some(Arc::new(contents));
         Ok(())
@@ -181,7 +208,7 @@ impl SceneBuilder {
 
     /// Adds what was read before. What was odd about it has been told.
     fn add_again(&mut self, contents: &Contents, file: &NameRef, placement: &Placement) -> Outcome<()> {
-        let (objects, parts) = (self.objects.len(), self.parts.len());
+        let (objects, parts, shared) = (self.objects.len(), self.parts.len(), self.sharing.count());
         let (lights, nodes, depth) = (self.lights.len(), self.models.nodes, self.models.depth);
         let outermost = !mem::replace(&mut self.models.again, true);
         let added = self.add_objects(&contents.objects, placement, &contents.materials, &mut Warnings::default());
@@ -191,6 +218,7 @@ impl SceneBuilder {
             // Only its reader can tell the place of what does not fit here: all over again.
             self.objects.truncate(objects);
             self.parts.truncate(parts);
+            self.sharing.truncate(shared);
             self.lights.truncate(lights);
             (self.models.nodes, self.models.depth) = (nodes, depth);
             self.read_model(file, placement)?;

@@ -4,14 +4,16 @@ use super::holes::Cut;
 use super::mapping::mapping;
 use super::parts::{Corners, ObjectParts};
 use super::placement::Placement;
+use super::sharing::Sharing;
 use super::{Names, SceneBuilder, index};
-use crate::geometry::{Shape, VertexAttributes, VertexExtras};
+use crate::geometry::Shape;
 use crate::scene::Object;
 use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
 use crate::scene::desc::{MeshDesc, ObjectDesc, ShapeDesc};
 use crate::scene::files::CANCELLED;
 use crate::scene::limits::exceeded;
 use glam::{DVec3, Vec3, Vec4};
+use std::sync::Arc;
 
 /// Primitives of capped cylinders and cones.
 const SIDE: u32 = 0;
@@ -67,8 +69,15 @@ impl SceneBuilder {
             _ => None,
         };
         let is_thin = self.materials[material as usize].is_thin();
-        let mut parts = ObjectParts::new(&mut self.parts, &self.limits, id, object.at);
-        add_shape(object, placement, cut.as_ref(), &mut parts)?;
+        let elsewhere = self.sharing.totals();
+        let mut parts = ObjectParts::new(&mut self.parts, elsewhere, &self.limits, id, object.at);
+        let is_shared = match &object.shape {
+            ShapeDesc::Mesh(mesh) if cut.is_none() => share(&mut self.sharing, mesh, placement, id, &mut parts)?,
+            _ => false,
+        };
+        if !is_shared {
+            add_shape(object, placement, cut.as_ref(), &mut parts)?;
+        }
         self.objects.push(Object {
             name: object.name.clone(),
             kind: object.kind,
@@ -80,6 +89,24 @@ impl SceneBuilder {
         });
         Ok(())
     }
+}
+
+/// Places a mesh that is stored once, if it is to be and can be.
+fn share(
+    sharing: &mut Sharing,
+    mesh: &Arc<MeshDesc>,
+    placement: &Placement,
+    object: u32,
+    parts: &mut ObjectParts,
+) -> Outcome<bool> {
+    let Some(to_store) = sharing.triangles_to_store(mesh) else { return Ok(false) };
+    parts.check(to_store as u64, mesh.triangles.len() as u64)?;
+    let with_area = parts.survey(mesh, placement)?;
+    let is_placed = sharing.place(mesh, object, *placement.transform(), parts.bounds, with_area);
+    if !is_placed {
+        parts.restart();
+    }
+    Ok(is_placed)
 }
 
 /// Whether light bends in it: what encloses a volume does, single surfaces do not.
@@ -199,21 +226,10 @@ fn add_mesh(mesh: &MeshDesc, placement: &Placement, cut: Option<&Cut>, parts: &m
     let points: Vec<DVec3> = mesh.vertices.iter().map(|p| placement.point(*p)).collect();
     let normals: Vec<Vec3> = mesh.normals.iter().map(|n| placement.normal(*n).as_vec3()).collect();
     let tangents: Vec<Vec4> = mesh.tangents.iter().map(|t| placement.tangent(*t)).collect();
-    let has_attributes = !normals.is_empty() || !mesh.uvs.is_empty();
-    let has_extras = !mesh.uvs1.is_empty() || !mesh.colors.is_empty() || !tangents.is_empty();
     for (primitive, triangle) in (0..).zip(&mesh.triangles) {
         let corners = triangle.map(|i| i as usize);
-        let attributes = has_attributes.then(|| VertexAttributes {
-            normals: (!normals.is_empty()).then(|| corners.map(|i| normals[i])),
-            uvs: (!mesh.uvs.is_empty()).then(|| corners.map(|i| mesh.uvs[i].as_vec2())),
-        });
-        let extras = has_extras.then(|| {
-            Box::new(VertexExtras {
-                uvs1: corners.map(|i| mesh.uvs1.get(i).copied().unwrap_or_default()),
-                colors: corners.map(|i| mesh.colors.get(i).copied().unwrap_or(Vec4::ONE)),
-                tangents: corners.map(|i| tangents.get(i).copied().unwrap_or_default()),
-            })
-        });
+        let attributes = mesh.attributes(corners, |i| normals[i]);
+        let extras = mesh.extras(corners, |i| tangents[i]).map(Box::new);
         let holes = cut.map(|cut| Box::new(cut.corners(mesh, corners)));
         let carried = Corners { attributes, extras, holes };
         parts.push_triangle(primitive, corners.map(|i| points[i]), carried, placement)?;
@@ -225,17 +241,17 @@ fn add_mesh(mesh: &MeshDesc, placement: &Placement, cut: Option<&Cut>, parts: &m
 mod tests {
     use super::*;
     use crate::geometry::Part;
-    use crate::scene::Limits;
+    use crate::scene::LoadOptions;
     use crate::scene::desc::SceneDesc;
     use crate::scene::files::Files;
     use glam::{DAffine3, DVec2};
     use std::path::Path;
-    use std::sync::Arc;
 
     /// The parts of one object under a transform.
     fn parts_of(shape: ShapeDesc, transform: Option<DAffine3>) -> Vec<Part> {
-        let limits = Limits::default();
-        let mut builder = SceneBuilder::new(Path::new("test"), "none", Files::embedded(&[], &limits), limits);
+        let options = LoadOptions::default();
+        let limits = &options.limits;
+        let mut builder = SceneBuilder::new(Path::new("test"), "none", Files::embedded(&[], limits), &options);
         let object = ObjectDesc { at: At(0), kind: "shape", name: None, material: None, transform, shape };
         let scene = SceneDesc { objects: vec![object], ..SceneDesc::default() };
         builder.add(scene, &mut Warnings::default()).unwrap();

@@ -2,7 +2,8 @@
 
 use super::bounds::shape_bounds;
 use super::placement::Placement;
-use crate::geometry::{Aabb, Holes, Part, PrimitiveId, Shape, VertexAttributes, VertexExtras};
+use super::sharing::Totals;
+use crate::geometry::{Aabb, Holes, Mesh, Part, PrimitiveId, Shape, VertexAttributes, VertexExtras};
 use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
 use crate::scene::limits::{Limits, exceeded};
 use glam::{DVec3, Vec3};
@@ -29,9 +30,14 @@ impl Corners {
     }
 }
 
+/// Indices of primitives fit 32 bits, and one is kept for none.
+const MOST_INDICES: u64 = u32::MAX as u64 - 1;
+
 /// Collects the parts of one object, in ascending order of their primitive, and what all of them share.
 pub struct ObjectParts<'a> {
     parts: &'a mut Vec<Part>,
+    /// What instances take.
+    elsewhere: Totals,
     limits: &'a Limits,
     object: u32,
     at: At,
@@ -44,20 +50,69 @@ pub struct ObjectParts<'a> {
 
 impl<'a> ObjectParts<'a> {
     /// No parts yet of the object that stands at `at`.
-    pub fn new(parts: &'a mut Vec<Part>, limits: &'a Limits, object: u32, at: At) -> Self {
-        Self { parts, limits, object, at, bounds: Aabb::EMPTY, dropped: 0, first_dropped: 0 }
+    pub fn new(parts: &'a mut Vec<Part>, elsewhere: Totals, limits: &'a Limits, object: u32, at: At) -> Self {
+        Self { parts, elsewhere, limits, object, at, bounds: Aabb::EMPTY, dropped: 0, first_dropped: 0 }
     }
 
     /// Makes room for `count` more parts at once.
     pub fn reserve(&mut self, count: usize) -> Outcome<()> {
-        if (self.parts.len() + count) as u64 > self.limits.primitives {
-            return Err(Problem::new(
-                self.at,
-                format!("primitives: {}", exceeded("primitives", self.limits.primitives)),
-            ));
-        }
+        self.check(count as u64, count as u64)?;
         let no_memory = |_| Problem::new(self.at, format!("there is no memory for {count} more primitives"));
         self.parts.try_reserve(count).map_err(no_memory)
+    }
+
+    /// Whether `stored` more primitives, and `indices` more for them, are allowed.
+    pub fn check(&self, stored: u64, indices: u64) -> Outcome<()> {
+        let own = self.parts.len() as u64;
+        if own + self.elsewhere.triangles + stored > self.limits.primitives {
+            let message = format!("primitives: {}", exceeded("primitives", self.limits.primitives));
+            return Err(Problem::new(self.at, message));
+        }
+        match own + self.elsewhere.indices + indices > MOST_INDICES {
+            true => Err(Problem::new(self.at, "with every mesh as often as it is placed, more than 2^32 triangles")),
+            false => Ok(()),
+        }
+    }
+
+    /// Takes a mesh into account that is stored elsewhere. Tells how many of its triangles have area in the world.
+    pub fn survey(&mut self, mesh: &Mesh, placement: &Placement) -> Outcome<u32> {
+        let points: Vec<Vec3> = mesh.vertices.iter().map(|p| placement.point(*p).as_vec3()).collect();
+        let mut with_area = 0;
+        for (triangle, corners) in (0..).zip(&mesh.triangles) {
+            let corners = corners.map(|i| points[i as usize]);
+            if self.has_area(triangle, corners) {
+                self.enclose(Aabb::from_points(corners))?;
+                with_area += 1;
+            }
+        }
+        Ok(with_area)
+    }
+
+    /// Forgets what was taken into account.
+    pub fn restart(&mut self) {
+        (self.bounds, self.dropped) = (Aabb::EMPTY, 0);
+    }
+
+    /// Whether a triangle spans any area; those that do not are counted.
+    fn has_area(&mut self, primitive: u32, [a, b, c]: [Vec3; 3]) -> bool {
+        if cross(a, b, c) != DVec3::ZERO {
+            return true;
+        }
+        if self.dropped == 0 {
+            self.first_dropped = primitive;
+        }
+        self.dropped += 1;
+        false
+    }
+
+    /// Takes the bounds of something finite into account.
+    fn enclose(&mut self, bounds: Aabb) -> Outcome<()> {
+        if !bounds.is_finite() {
+            let message = "in the world, the object reaches beyond 3.4e38; make it smaller or move it nearer";
+            return Err(Problem::new(self.at, message));
+        }
+        self.bounds = self.bounds.union(bounds);
+        Ok(())
     }
 
     /// Adds a shape.
@@ -75,11 +130,7 @@ impl<'a> ObjectParts<'a> {
         placement: &Placement,
     ) -> Outcome<()> {
         let [a, b, c] = corners.map(|p| p.as_vec3());
-        if cross(a, b, c) == DVec3::ZERO {
-            if self.dropped == 0 {
-                self.first_dropped = primitive;
-            }
-            self.dropped += 1;
+        if !self.has_area(primitive, [a, b, c]) {
             return Ok(());
         }
         if placement.is_mirrored() {
@@ -90,16 +141,11 @@ impl<'a> ObjectParts<'a> {
     }
 
     fn push_with(&mut self, primitive: u32, shape: Shape, carried: Corners) -> Outcome<()> {
-        let bounds = shape_bounds(&shape);
-        let is_plane = matches!(shape, Shape::Plane { .. });
-        if !is_plane && !bounds.is_finite() {
-            return Err(Problem::new(
-                self.at,
-                "in the world, the object reaches beyond 3.4e38; make it smaller or move it nearer",
-            ));
+        match shape {
+            Shape::Plane { .. } => self.bounds = Aabb::INFINITE,
+            _ => self.enclose(shape_bounds(&shape))?,
         }
         self.reserve(1)?;
-        self.bounds = self.bounds.union(bounds);
         let id = PrimitiveId { object: self.object, primitive };
         let Corners { attributes, extras, holes } = carried;
         self.parts.push(Part { shape, id, attributes, extras, holes });

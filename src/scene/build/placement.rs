@@ -1,5 +1,6 @@
 //! Where an object stands in the world: the product of the transforms above it, kept in f64.
 
+use crate::geometry::Transform;
 use crate::scene::desc::problem::{At, Outcome, Problem};
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec4};
 
@@ -9,52 +10,46 @@ const UNIFORM_TOLERANCE: f64 = 1e-4;
 
 /// From an object's own space to the world.
 #[derive(Clone, Debug)]
-pub struct Placement {
-    to_world: DAffine3,
-    /// The inverse transpose: what normals are moved by.
-    normals: DMat3,
-    transformed: bool,
-}
+pub struct Placement(Transform);
 
 impl Placement {
     /// The world's own space.
-    pub const WORLD: Self = Self { to_world: DAffine3::IDENTITY, normals: DMat3::IDENTITY, transformed: false };
+    pub const WORLD: Self = Self(Transform::IDENTITY);
 
     /// A space within this one. `at` is where its transform stands.
     pub fn within(&self, transform: &DAffine3, at: At) -> Outcome<Self> {
-        let to_world = self.to_world * *transform;
-        let normals = to_world.matrix3.inverse().transpose();
-        if !to_world.is_finite() || !normals.is_finite() || to_world.matrix3.determinant() == 0.0 {
-            return Err(Problem::new(at, "with the groups around it, the transform's scale is too large or too small"));
-        }
-        Ok(Self { to_world, normals, transformed: true })
+        let odd = || Problem::new(at, "with the groups around it, the transform's scale is too large or too small");
+        Transform::new(*self.0.matrix() * *transform).map(Self).ok_or_else(odd)
+    }
+
+    /// The way to the world.
+    pub fn transform(&self) -> &Transform {
+        &self.0
     }
 
     /// A point in the world.
     pub fn point(&self, point: DVec3) -> DVec3 {
-        self.to_world.transform_point3(point)
+        self.0.point(point)
     }
 
     /// The unit normal in the world of a surface with `normal`; on the same side of the surface, mirrored or not.
     pub fn normal(&self, normal: DVec3) -> DVec3 {
-        if self.transformed { (self.normals * normal).normalize_or_zero() } else { normal.normalize_or_zero() }
+        self.0.normal(normal)
     }
 
     /// The unit direction in the world of a surface's tangent, with the sign of its bitangent.
     pub fn tangent(&self, tangent: Vec4) -> Vec4 {
-        let along = (self.to_world.matrix3 * tangent.truncate().as_dvec3()).normalize_or_zero();
-        let sign = if self.is_mirrored() { -tangent.w } else { tangent.w };
-        along.as_vec3().extend(sign)
+        self.0.tangent(tangent)
     }
 
     /// Whether it swaps left and right, and with that the winding of triangles.
     pub fn is_mirrored(&self) -> bool {
-        self.to_world.matrix3.determinant() < 0.0
+        self.0.is_mirrored()
     }
 
     /// The factor by which all lengths grow; `None` when it depends on the direction.
     pub fn uniform_scale(&self) -> Option<f64> {
-        let m = self.to_world.matrix3;
+        let m = self.0.matrix().matrix3;
         let squared = m.transpose() * m;
         let size = (squared.x_axis.x + squared.y_axis.y + squared.z_axis.z) / 3.0;
         let apart = (squared - DMat3::from_diagonal(DVec3::splat(size))).to_cols_array();
@@ -64,7 +59,7 @@ impl Placement {
     /// From the world to the object's own space; `None` where they are the same.
     pub fn world_to_object(&self) -> Option<Affine3A> {
         let narrow = |m: DAffine3| Affine3A::from_mat3_translation(m.matrix3.as_mat3(), m.translation.as_vec3());
-        self.transformed.then(|| narrow(self.to_world.inverse()))
+        (!self.0.is_identity()).then(|| narrow(self.0.matrix().inverse()))
     }
 }
 

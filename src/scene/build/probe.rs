@@ -80,10 +80,9 @@ impl<'a> Probe<'a> {
 
     fn normal(&self, primitive: PrimitiveIndex) -> Option<Vec3> {
         let (normal, _) = self.geometry.plane_of(primitive)?;
-        let slot = self.geometry.slots[primitive as usize];
         // The corners of triangles are stored in another order, and whether that turns them around.
-        let turned = slot.kind == PrimitiveKind::Triangle
-            && self.geometry.triangles[slot.block as usize].get(usize::from(slot.place))[9] < 0.0;
+        let is_whole = self.geometry.slot(primitive).kind == PrimitiveKind::Triangle;
+        let turned = is_whole && self.geometry.triangle(primitive).is_some_and(|fields| fields[9] < 0.0);
         Some(if turned { -normal } else { normal })
     }
 }

@@ -16,8 +16,9 @@ pub mod texture;
 pub mod transform;
 pub mod value;
 
+pub use crate::geometry::Mesh as MeshDesc;
 pub use material::MaterialDesc;
-pub use object::{MeshDesc, ObjectDesc, ShapeDesc};
+pub use object::{ObjectDesc, ShapeDesc};
 pub use suggest::hint;
 pub use texture::{ImageDesc, ImageSource, TextureDesc, TextureKind};
 

@@ -4,8 +4,8 @@ use super::map::{Map, shortened};
 use super::node::Node;
 use super::problem::{At, Outcome, Problem};
 use super::value::{array, boolean, direction, indices, not_negative, positive, rows, text, vector};
-use super::{Context, NameRef, hint, transform};
-use glam::{DAffine3, DVec2, DVec3, Vec2, Vec4};
+use super::{Context, MeshDesc, NameRef, hint, transform};
+use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;
 
 /// An object as the file gives it, in its own space.
@@ -68,26 +68,6 @@ pub enum ShapeDesc {
     Model {
         file: NameRef,
     },
-}
-
-/// Triangles over shared vertices.
-#[derive(Clone, Debug, Default)]
-pub struct MeshDesc {
-    /// Positions.
-    pub vertices: Vec<DVec3>,
-    /// Three indices into `vertices` each, counter-clockwise seen from outside.
-    pub triangles: Vec<[u32; 3]>,
-    /// Shading normals, one a vertex and of any length but 0, or none at all.
-    pub normals: Vec<DVec3>,
-    /// Texture coordinates, one a vertex, or none at all.
-    pub uvs: Vec<DVec2>,
-    /// Second texture coordinates, one a vertex, or none at all.
-    pub uvs1: Vec<Vec2>,
-    /// Linear colours with opacity, which multiply the material's, one a vertex, or none at all.
-    pub colors: Vec<Vec4>,
-    /// Unit directions along which u grows, and the sign of that along which v grows, as glTF has them; one a vertex, or
-    /// none at all.
-    pub tangents: Vec<Vec4>,
 }
 
 /// Reads a type's own keys.

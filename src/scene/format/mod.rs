@@ -11,7 +11,7 @@ mod xml;
 
 pub use json::read_camera;
 
-use super::build::SceneBuilder;
+use super::build::{Instancing, SceneBuilder};
 use super::desc::SceneDesc;
 use super::desc::problem::{At, Outcome, Warnings};
 use super::error::{Place, SceneError, Warning};
@@ -27,6 +27,8 @@ pub struct LoadOptions {
     pub strict: bool,
     /// What the scene may ask of the machine.
     pub limits: Limits,
+    /// When meshes that are placed several times are stored once.
+    pub instancing: Instancing,
     /// Is told how far the load has come, and may end it.
     pub progress: Progress,
 }
@@ -131,7 +133,7 @@ fn read(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, Sce
 
 fn build(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, SceneError> {
     let format = format_of(input.path)?;
-    let mut builder = SceneBuilder::new(input.path, format.name, files, options.limits.clone());
+    let mut builder = SceneBuilder::new(input.path, format.name, files, options);
     (format.read)(input, &mut builder)?;
     builder.finish().ok_or_else(|| SceneError::Cancelled { place: whole(input.path) })
 }

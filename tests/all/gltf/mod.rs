@@ -1,7 +1,7 @@
 //! glTF: what each part of a file becomes, and how wrong files fail.
 
 pub mod broken;
-mod file;
+pub mod file;
 mod materials;
 mod meshes;
 mod nodes;

@@ -103,7 +103,7 @@ pub fn objects(
             }
         });
     }
-    place_objects(document, &jobs, &shapes, &drawn, materials, limits, report)
+    place_objects(document, &jobs, &shapes, &drawn, materials, report)
 }
 
 /// Puts the primitives that were read where their nodes stand.
@@ -113,11 +113,9 @@ fn place_objects(
     shapes: &[Option<Arc<MeshDesc>>],
     drawn: &[(usize, Vec<DAffine3>, Vec<usize>)],
     materials: &[MaterialDesc],
-    limits: &Limits,
     report: &mut Report,
 ) -> Read<Vec<ObjectDesc>> {
     let mut objects = Vec::new();
-    let mut primitives = 0;
     let at: Vec<_> = jobs.iter().map(|job| report.at(&*job.pointer)).collect();
     for (node, places, own_jobs) in drawn {
         let own = &document.root.nodes[*node];
@@ -133,11 +131,6 @@ fn place_objects(
             }
             for &job in own_jobs {
                 let Some(shape) = &shapes[job] else { continue };
-                primitives += shape.triangles.len() as u64;
-                if primitives > limits.primitives {
-                    let message = format!("primitives: {}", exceeded("primitives", limits.primitives));
-                    return Err(Fault::new(format!("/nodes/{node}"), message));
-                }
                 let material = material_of(jobs[job].primitive, materials, &jobs[job].pointer)?;
                 objects.push(ObjectDesc {
                     at: at[job],
