@@ -16,6 +16,8 @@ const DISTANCE_SHARE: f64 = 2e-4;
 const ANGLE: f64 = 0.05;
 /// Longest recording in places: an hour and more of movement without a rest.
 const MOST_SAMPLES: usize = 500_000;
+/// Of a rest, parts shorter than this are not looked at, in seconds.
+const SHORTEST_REST: f64 = 0.004;
 /// Numbers of files.
 const MOST_FILES: u32 = 9999;
 /// Until a file that is being written is asked after.
@@ -31,17 +33,11 @@ struct Recorder {
 }
 
 impl Recorder {
-    /// Takes the camera of a moment. Of a rest, only both ends are kept.
+    /// Takes the camera of a moment.
     fn see(&mut self, now: Instant, camera: Camera) {
-        let t = now.saturating_duration_since(self.began).as_secs_f64();
-        let rested = self.samples.last().map(|last| (last.camera == camera, last.t));
-        if let Some((false, moved)) = rested
-            && self.seen > moved
-            && let Some(&last) = self.samples.last()
-        {
-            self.samples.push(Sample { t: self.seen, ..last });
-        }
-        if rested.is_none_or(|(same, last)| !same && t > self.seen.max(last)) {
+        let t = seconds(now.saturating_duration_since(self.began));
+        if self.samples.last().is_none_or(|last| last.camera != camera) && t > self.seen {
+            self.end_rest();
             self.samples.push(Sample { t, camera });
         }
         self.seen = self.seen.max(t);
@@ -49,13 +45,31 @@ impl Recorder {
 
     /// Everything until now.
     fn samples(mut self) -> Vec<Sample> {
-        if let Some(&last) = self.samples.last()
-            && self.seen > last.t
-        {
-            self.samples.push(Sample { t: self.seen, ..last });
-        }
+        self.end_rest();
         self.samples
     }
+
+    /// Notes that the camera has not moved since the last sample. The closer to both ends the denser: a curve that has to
+    /// move off at once must not swing back before.
+    fn end_rest(&mut self) {
+        let Some(&last) = self.samples.last() else { return };
+        let (start, end) = (last.t, self.seen);
+        let halves = |length: f64| std::iter::successors(Some(length / 2.0), |l| Some(l / 2.0));
+        let mut times: Vec<f64> = halves(end - start).take_while(|l| *l > SHORTEST_REST).map(|l| start + l).collect();
+        times.extend(halves(end - start).take_while(|l| *l > SHORTEST_REST).map(|l| end - l));
+        times.push(end);
+        times.sort_by(f64::total_cmp);
+        for t in times.into_iter().map(|t| seconds(Duration::from_secs_f64(t))) {
+            if self.samples.last().is_some_and(|last| t > last.t) {
+                self.samples.push(Sample { t, ..last });
+            }
+        }
+    }
+}
+
+/// Whole microseconds, as seconds: numbers that are written with few digits and read as they were.
+fn seconds(duration: Duration) -> f64 {
+    duration.as_micros() as f64 / 1e6
 }
 
 /// A path that was written, or why it was not.

@@ -94,7 +94,7 @@ mod tests {
         let (mut t, mut eye, mut yaw, mut fov) = (0.0, Vec3::new(3.0, 1.6, -2.0), 20.0, 60.0);
         for i in 0_u32..1500 {
             let step = 0.006 + 0.004 * f64::from(i * 7 % 5);
-            t += step;
+            t = f64::round((t + step) * 1e6) / 1e6;
             match i / 300 {
                 1 => eye.z -= 2.5 * step as f32,
                 2 => {
