@@ -1,9 +1,8 @@
 //! Recording where one goes, and going there again.
 
+use crate::picture::{NumberedName, PendingFile, PictureError};
 use crate::scene::path::{Sample, Tolerance};
 use crate::scene::{Camera, CameraPath};
-use std::fs::OpenOptions;
-use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -18,8 +17,9 @@ const ANGLE: f64 = 0.05;
 const MOST_SAMPLES: usize = 500_000;
 /// Of a rest, parts shorter than this are not looked at, in seconds.
 const SHORTEST_REST: f64 = 0.004;
-/// Numbers of files.
-const MOST_FILES: u32 = 9999;
+/// Name of the files of paths, and most numbers that are tried.
+const NAME: &str = "raywalk-path-%04d.json";
+const MOST_FILES: u64 = 9999;
 /// Until a file that is being written is asked after.
 pub const ASK_AGAIN: Duration = Duration::from_millis(50);
 
@@ -125,7 +125,7 @@ impl Journey {
         // The fit takes a while for a long walk, and a disk may be slow.
         self.writer = Some(std::thread::spawn(move || {
             let path = CameraPath::fitted(&samples, FPS, tolerance).ok_or("nothing was recorded")?;
-            let file = write(&folder, &path.to_json())?;
+            let file = write(&folder, &path.to_json()).map_err(|error| error.to_string())?;
             Ok((path, file))
         }));
     }
@@ -164,23 +164,10 @@ impl Journey {
 }
 
 /// Writes a file of a name that is not taken.
-fn write(folder: &Path, text: &str) -> Result<PathBuf, String> {
-    for number in 1..=MOST_FILES {
-        let file = folder.join(format!("raywalk-path-{number:04}.json"));
-        let told = |error| format!("cannot write {}: {error}", file.display());
-        match OpenOptions::new().write(true).create_new(true).open(&file) {
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-            Err(error) => return Err(told(error)),
-            Ok(mut open) => {
-                return open.write_all(text.as_bytes()).map(|()| file.clone()).map_err(|error| {
-                    // A part of a path is none.
-                    let _ = std::fs::remove_file(&file);
-                    told(error)
-                });
-            }
-        }
-    }
-    Err(format!("cannot write a path: all names up to raywalk-path-{MOST_FILES}.json are taken"))
+fn write(folder: &Path, text: &str) -> Result<PathBuf, PictureError> {
+    let name = NumberedName::new(&folder.join(NAME));
+    let names = (1..=MOST_FILES).map(|number| name.of(number));
+    PendingFile::beside(&name.of(1))?.commit_to_free(names, |sink| Ok(sink.write_all(text.as_bytes())?))
 }
 
 #[cfg(test)]
@@ -238,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_file_that_cannot_be_written_is_told() {
-        let error = write(Path::new("/no/such/folder"), "").expect_err("there is no such folder");
-        assert!(error.starts_with("cannot write /no/such/folder/raywalk-path-0001.json: "), "{error}");
+        let error = write(Path::new("/no/such/folder"), "").expect_err("there is no such folder").to_string();
+        assert!(error.contains("cannot write") && error.contains("/no/such/folder/raywalk-path-0001.json"), "{error}");
     }
 }
