@@ -356,6 +356,7 @@ impl Geometry {
     }
 
     /// The kernel's fields of a triangle that lies in a shared mesh; 0 for others. Not inlined: few scenes have any.
+    #[cold]
     #[inline(never)]
     pub fn shared_fields(&self, primitive: PrimitiveIndex) -> [f32; 10] {
         match self.instances.find(primitive) {

@@ -232,7 +232,15 @@ fn interpolate_normals<S: Simd>(simd: S, frame: &Frame<'_>, hits: &Hits<'_>, sur
         simd,
         #[inline(always)]
         |primitive| {
-            let normals = frame.tables.attributes(geometry, primitive, |a| a.normals).flatten();
+            let normals = frame
+                .tables
+                .attributes(
+                    geometry,
+                    primitive,
+                    #[inline(always)]
+                    |a| a.normals,
+                )
+                .flatten();
             let [a, b, c] = normals.unwrap_or([Vec3::ZERO; 3]);
             [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z]
         },

@@ -145,7 +145,12 @@ fn tangents<S: Simd>(
         simd,
         #[inline(always)]
         |primitive| {
-            let tangents = frame.tables.extras(&frame.scene.geometry, primitive, |extras| extras.tangents);
+            let tangents = frame.tables.extras(
+                &frame.scene.geometry,
+                primitive,
+                #[inline(always)]
+                |extras| extras.tangents,
+            );
             let [a, b, c] = tangents.unwrap_or([Vec4::ZERO; 3]);
             [a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w]
         },

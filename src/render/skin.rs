@@ -127,7 +127,12 @@ impl<S: Simd> Skin<S> {
             simd,
             #[inline(always)]
             |primitive| {
-                let colors = frame.tables.extras(&frame.scene.geometry, primitive, |extras| extras.colors);
+                let colors = frame.tables.extras(
+                    &frame.scene.geometry,
+                    primitive,
+                    #[inline(always)]
+                    |extras| extras.colors,
+                );
                 let [a, b, c] = colors.unwrap_or([Vec4::ONE; 3]);
                 [a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w]
             },

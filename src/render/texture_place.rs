@@ -94,8 +94,20 @@ impl<S: Simd> Place<S> {
             #[inline(always)]
             |primitive| {
                 let coordinates = match set {
-                    0 => tables.attributes(geometry, primitive, |attributes| attributes.uvs).flatten(),
-                    _ => tables.extras(geometry, primitive, |extras| extras.uvs1),
+                    0 => tables
+                        .attributes(
+                            geometry,
+                            primitive,
+                            #[inline(always)]
+                            |attributes| attributes.uvs,
+                        )
+                        .flatten(),
+                    _ => tables.extras(
+                        geometry,
+                        primitive,
+                        #[inline(always)]
+                        |extras| extras.uvs1,
+                    ),
                 };
                 let [a, b, c] = coordinates.unwrap_or([Vec2::ZERO; 3]);
                 [a.x, a.y, b.x, b.y, c.x, c.y]

@@ -156,6 +156,7 @@ impl Instances {
         if self.is_empty() { Home::Own(primitive) } else { self.find_among(primitive) }
     }
 
+    #[cold]
     #[inline(never)]
     fn find_among(&self, primitive: PrimitiveIndex) -> Home {
         let next = self.placed.partition_point(|instance| instance.first <= primitive);
@@ -228,6 +229,7 @@ impl Instances {
     }
 
     /// What its corners carry, in the kernel's order.
+    #[cold]
     #[inline(never)]
     pub fn attributes(&self, of: SharedTriangle) -> Option<VertexAttributes> {
         let (instance, mesh) = self.parts(of);
@@ -238,6 +240,7 @@ impl Instances {
     }
 
     /// What they carry besides, in the same order.
+    #[cold]
     #[inline(never)]
     pub fn extras(&self, of: SharedTriangle) -> Option<VertexExtras> {
         let (instance, mesh) = self.parts(of);
