@@ -1,0 +1,59 @@
+//! What there is to say of scenes, as the overlay shows it.
+
+use super::load::Failed;
+use crate::scene::Scene;
+use crate::scene::progress::Step;
+use std::path::PathBuf;
+
+/// A load that came to nothing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// What could not be done.
+    pub title: String,
+    /// Why: file and place, problem, remedy.
+    pub message: String,
+    /// What to open to try it again.
+    pub file: Option<PathBuf>,
+}
+
+impl Failure {
+    /// For the reason that the load gave.
+    pub(super) fn new(title: String, failed: &Failed, file: PathBuf) -> Self {
+        Self { title, message: failed.to_string(), file: Some(file) }
+    }
+
+    /// Where no file can be chosen.
+    pub(super) fn of_no_dialog() -> Self {
+        let message = "This desktop has neither a portal for file dialogs (xdg-desktop-portal) nor zenity. Drop a scene \
+                       file or its folder on this window, or name it on the command line.";
+        Self { title: "There is no file dialog here".to_owned(), message: message.to_owned(), file: None }
+    }
+}
+
+/// A load as the overlay shows it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loading {
+    /// What is loaded.
+    pub name: String,
+    /// What the load is busy with.
+    pub step: Step,
+    /// How long it has taken.
+    pub seconds: f64,
+}
+
+/// What there is to say of scenes.
+#[derive(Clone, Debug, Default)]
+pub struct Report<'a> {
+    /// The load under way, if it takes long.
+    pub loading: Option<Loading>,
+    /// The load that came to nothing, until it is dismissed or another begins.
+    pub failure: Option<&'a Failure>,
+    /// A scene that was odd, until that is dismissed.
+    pub odd: Option<&'a Scene>,
+    /// What may be done now.
+    pub hint: Option<&'static str>,
+    /// The files that were opened last.
+    pub recent: &'a [PathBuf],
+    /// Why files are not watched, if they are not.
+    pub blind: Option<&'a str>,
+}

@@ -1,0 +1,191 @@
+//! Scenes opened, edited, broken and mended while they are shown.
+
+use super::temporary::Folder;
+use super::*;
+use std::sync::Mutex;
+
+const SOON: Duration = Duration::from_secs(20);
+const BALL: &str = r#"{ "type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "red" }"#;
+
+/// Scenes, and a channel that says when to ask for news.
+fn scenes() -> (Scenes, Receiver<()>) {
+    let (sender, woken) = channel();
+    let sender = Mutex::new(sender);
+    let wake = move || sender.lock().expect("nobody panics").send(()).unwrap_or(());
+    (Scenes::new(LoadOptions::default(), RecentFiles::default(), Arc::new(wake)), woken)
+}
+
+fn ball(color: &str) -> String {
+    format!(r#"{{ "version": 1, "materials": {{ "red": {{ "color": {color} }} }}, "objects": [{BALL}] }}"#)
+}
+
+/// Waits for news, or for `until` to come true.
+fn wait(scenes: &mut Scenes, woken: &Receiver<()>, until: impl Fn(&Scenes) -> bool) -> Option<News> {
+    let end = Instant::now() + SOON;
+    loop {
+        if let Some(news) = scenes.news() {
+            return Some(news);
+        }
+        if until(scenes) {
+            return None;
+        }
+        let left = end.saturating_duration_since(Instant::now());
+        woken.recv_timeout(left).expect("something comes of it");
+    }
+}
+
+fn opened(scenes: &mut Scenes, woken: &Receiver<()>) -> Arrival {
+    match wait(scenes, woken, |_| false) {
+        Some(News::Opened(arrival)) => arrival,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn reloaded(scenes: &mut Scenes, woken: &Receiver<()>) -> Arrival {
+    match wait(scenes, woken, |_| false) {
+        Some(News::Reloaded(arrival)) => arrival,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn red(arrival: &Arrival) -> f32 {
+    arrival.scene.materials[0].color.factor.x
+}
+
+#[test]
+fn a_folder_is_opened_and_its_file_remembered() {
+    let folder = Folder::new();
+    let file = folder.write("ball.json", ball("[0.5, 0, 0]"));
+    let (mut scenes, woken) = scenes();
+    scenes.drop_in(folder.path().to_owned());
+    assert!(scenes.open_dropped() && scenes.is_loading() && !scenes.open_dropped());
+    let arrival = opened(&mut scenes, &woken);
+    assert_eq!((red(&arrival), arrival.file.as_ref()), (0.5, Some(&file)));
+    assert_eq!(scenes.recent().files(), [file]);
+    assert!(!scenes.is_loading());
+}
+
+#[test]
+fn an_edit_is_seen_a_broken_one_is_survived_and_mended() {
+    let folder = Folder::new();
+    let file = folder.write("ball.json", ball("[0.5, 0, 0]"));
+    let (mut scenes, woken) = scenes();
+    scenes.open(&file);
+    opened(&mut scenes, &woken);
+    folder.write("ball.json", ball("[0.25, 0, 0]"));
+    assert_eq!(red(&reloaded(&mut scenes, &woken)), 0.25);
+    folder.write("ball.json", "{ \"version\": 1,");
+    assert!(wait(&mut scenes, &woken, |scenes| scenes.failure.is_some()).is_none());
+    let failure = scenes.report(Instant::now()).failure.expect("it was broken");
+    assert!(failure.title.contains("ball.json could not be reloaded"), "{}", failure.title);
+    assert!(failure.message.contains("ball.json:1:"), "{}", failure.message);
+    let new = folder.write("ball.json.new", ball("[0.125, 0, 0]"));
+    std::fs::rename(new, &file).expect("saved by renaming");
+    assert_eq!(red(&reloaded(&mut scenes, &woken)), 0.125);
+    assert!(scenes.report(Instant::now()).failure.is_none());
+}
+
+#[test]
+fn a_texture_may_be_missing_and_come_and_change() {
+    let folder = Folder::new();
+    let file = folder.write(
+        "ball.json",
+        format!(
+            r#"{{ "version": 1, "textures": {{ "wood": {{ "image": "wood.bmp" }} }},
+                "materials": {{ "red": {{ "color": {{ "texture": "wood" }} }} }}, "objects": [{BALL}] }}"#
+        ),
+    );
+    let (mut scenes, woken) = scenes();
+    scenes.open(&file);
+    // A JSON scene needs its textures; the scene was not opened, so what it lacks is not waited for.
+    assert!(wait(&mut scenes, &woken, |scenes| scenes.failure.is_some()).is_none());
+    folder.write("wood.bmp", bitmap(10));
+    scenes.open(&file);
+    opened(&mut scenes, &woken);
+    folder.write("wood.bmp", bitmap(200));
+    reloaded(&mut scenes, &woken);
+    std::fs::remove_file(folder.path().join("wood.bmp")).expect("removed");
+    assert!(wait(&mut scenes, &woken, |scenes| scenes.failure.is_some()).is_none());
+    folder.write("wood.bmp", bitmap(10));
+    reloaded(&mut scenes, &woken);
+}
+
+/// A bitmap of one grey pixel.
+fn bitmap(grey: u8) -> Vec<u8> {
+    let mut bytes = b"BM".to_vec();
+    for word in [58_u32, 0, 54, 40, 1, 1, 1 | 24 << 16, 0, 4, 0, 0, 0, 0] {
+        bytes.extend(word.to_le_bytes());
+    }
+    bytes.extend([grey, grey, grey, 0]);
+    bytes
+}
+
+#[test]
+fn what_cannot_be_opened_leaves_what_is_shown_and_says_why() {
+    let folder = Folder::new();
+    let file = folder.write("ball.json", ball("[0.5, 0, 0]"));
+    let (mut scenes, woken) = scenes();
+    scenes.open(&file);
+    opened(&mut scenes, &woken);
+    let bad = folder.write("notes.txt", "");
+    scenes.drop_in(bad.clone());
+    assert!(scenes.open_dropped() && wait(&mut scenes, &woken, |scenes| scenes.failure.is_some()).is_none());
+    let failure = scenes.report(Instant::now()).failure.cloned().expect("it is no scene");
+    assert!(failure.message.contains("unknown scene format") && failure.file.as_ref() == Some(&bad));
+    // What is shown is still watched.
+    folder.write("ball.json", ball("[0.25, 0, 0]"));
+    assert_eq!(red(&reloaded(&mut scenes, &woken)), 0.25);
+}
+
+#[test]
+fn a_cancelled_load_is_forgotten() {
+    let folder = Folder::new();
+    let file = folder.write("ball.json", ball("[0.5, 0, 0]"));
+    let (mut scenes, woken) = scenes();
+    assert!(!scenes.cancel());
+    scenes.open(&file);
+    assert!(scenes.is_loading() && scenes.cancel() && !scenes.is_loading());
+    scenes.open(&file);
+    opened(&mut scenes, &woken);
+    assert!(scenes.report(Instant::now()).failure.is_none() && scenes.news().is_none());
+}
+
+#[test]
+fn what_is_shown_is_not_opened_but_reloaded() {
+    let folder = Folder::new();
+    let file = folder.write("ball.json", ball("[0.5, 0, 0]"));
+    let (mut scenes, woken) = scenes();
+    scenes.open(&file);
+    opened(&mut scenes, &woken);
+    scenes.open(&file);
+    reloaded(&mut scenes, &woken);
+}
+
+#[test]
+fn the_first_load_of_all_has_to_succeed() {
+    let (mut scenes, woken) = scenes();
+    let load = Load::start(Progress::default(), || Err("no such file".into()));
+    scenes.expect(load, PathBuf::from("room.json"));
+    match wait(&mut scenes, &woken, |_| false) {
+        Some(News::Nothing(failed)) => assert_eq!(failed.to_string(), "no such file"),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn warnings_stay_until_they_were_read_and_come_back_when_they_are_others() {
+    let folder = Folder::new();
+    let odd = |key: &str| format!(r#"{{ "version": 1, "{key}": 1, "objects": [] }}"#);
+    let file = folder.write("odd.json", odd("colour"));
+    let (mut scenes, woken) = scenes();
+    scenes.open(&file);
+    opened(&mut scenes, &woken);
+    assert!(scenes.report(Instant::now()).odd.is_some());
+    scenes.dismiss_warnings();
+    scenes.reload();
+    reloaded(&mut scenes, &woken);
+    assert!(scenes.report(Instant::now()).odd.is_none());
+    folder.write("odd.json", odd("colours"));
+    reloaded(&mut scenes, &woken);
+    assert!(scenes.report(Instant::now()).odd.is_some());
+}
