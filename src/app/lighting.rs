@@ -26,6 +26,18 @@ impl Dial {
         self.on && self.intensity == 1.0 && self.kelvin == NEUTRAL
     }
 
+    /// How it was turned: "lamp: off", "lamp: 0.5 times as bright, 4000 K". `None` as in the file.
+    pub fn turned(&self) -> Option<String> {
+        let Self { name, on, intensity, kelvin } = self;
+        match (on, *intensity != 1.0, *kelvin != NEUTRAL) {
+            (false, ..) => Some(format!("{name}: off")),
+            (true, true, true) => Some(format!("{name}: {intensity} times as bright, {kelvin} K")),
+            (true, true, false) => Some(format!("{name}: {intensity} times as bright")),
+            (true, false, true) => Some(format!("{name}: {kelvin} K")),
+            (true, false, false) => None,
+        }
+    }
+
     fn apply(&self, light: &Light) -> Option<Light> {
         if !self.on {
             return None;
@@ -161,7 +173,10 @@ mod tests {
         turned(&brighter, Dial { intensity: 2.5, ..dial.clone() }, &mut lighting, &mut scratch);
         let warmer = KEY.replace("\"name\"", "\"temperature\": 2700, \"name\"");
         turned(&warmer, Dial { kelvin: 2700.0, ..dial.clone() }, &mut lighting, &mut scratch);
-        turned("", Dial { on: false, ..dial }, &mut lighting, &mut scratch);
+        turned("", Dial { on: false, ..dial.clone() }, &mut lighting, &mut scratch);
+        assert_eq!(dial.turned(), None);
+        let both_ways = Dial { intensity: 2.5, kelvin: 2700.0, ..dial };
+        assert_eq!(both_ways.turned().as_deref(), Some("key: 2.5 times as bright, 2700 K"));
         lighting.reset();
         assert_eq!(picture(&lighting.lit(&both), &mut scratch), before);
     }

@@ -27,18 +27,30 @@ pub fn name(asked: &Path) -> Result<NumberedName, String> {
     if is_png && name.has_number() { Ok(name) } else { Err(format!("expected a name such as {USUAL_NAME}")) }
 }
 
+/// Where a picture was taken, beside what its job says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// The scene's file as it was opened; `None` for the built-in scene.
+    pub file: Option<PathBuf>,
+    /// The scene's cameras.
+    pub cameras: Vec<NamedCamera>,
+    /// Lights that were turned, in words.
+    pub turned: Vec<String>,
+}
+
 /// A picture on display, and what made it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shot {
     picture: EightBit,
     job: Job,
     samples: Option<u32>,
+    place: Place,
 }
 
 impl Shot {
-    /// Of `film`, traced for `job`; `samples` a pixel where it was refined at rest.
-    pub fn new(film: &Film, job: &Job, samples: Option<u32>) -> Self {
-        Self { picture: EightBit::of_film(film), job: job.clone(), samples }
+    /// Of `film`, traced for `job` at `place`; `samples` a pixel where it was refined at rest.
+    pub fn new(film: &Film, job: &Job, samples: Option<u32>, place: Place) -> Self {
+        Self { picture: EightBit::of_film(film), job: job.clone(), samples, place }
     }
 
     /// Whether flags can make the same picture: there are none for a part of the samples.
@@ -88,7 +100,7 @@ impl Camerawork {
             return Some(waiting);
         }
         if samples == Some(SAMPLES) {
-            return Some(Shot::new(film, job, samples));
+            return Some(Shot { picture: EightBit::of_film(film), samples, ..waiting });
         }
         self.waiting = Some(waiting);
         None
@@ -100,19 +112,10 @@ impl Camerawork {
     }
 }
 
-/// What else is told of a picture.
-#[derive(Clone, Debug)]
-pub struct Place {
-    /// The scene's file as it was opened; `None` for the built-in scene.
-    pub file: Option<PathBuf>,
-    /// The scene's cameras.
-    pub cameras: Vec<NamedCamera>,
-}
-
 /// What writes `shot` under the first free name.
-pub fn errand(shot: Shot, place: Place, name: NumberedName) -> Errand {
+pub fn errand(shot: Shot, name: NumberedName) -> Errand {
     Box::new(move || {
-        let notes = notes(&shot, &place);
+        let notes = notes(&shot);
         let write = |pending: PendingFile| {
             pending.commit_to_free((1..=MOST).map(|number| name.of(number)), |sink| {
                 write_annotated(&shot.picture, &notes, sink)
@@ -130,8 +133,8 @@ pub fn errand(shot: Shot, place: Place, name: NumberedName) -> Errand {
 }
 
 /// What is written into the file.
-fn notes(shot: &Shot, place: &Place) -> Vec<Note> {
-    let settings = shot.settings();
+fn notes(shot: &Shot) -> Vec<Note> {
+    let (settings, place) = (shot.settings(), &shot.place);
     let Camera { eye, look_at, up, fov, near, far } = shot.job.camera;
     let mut camera =
         json!({ "position": eye.to_array(), "look_at": look_at.to_array(), "up": up.to_array(), "fov": fov });
@@ -146,11 +149,15 @@ fn notes(shot: &Shot, place: &Place) -> Vec<Note> {
     let scene = place.file.as_ref().map_or_else(|| "built-in".to_owned(), |file| file.display().to_string());
     let mut notes = vec![
         ("Software", format!("raywalk {}", env!("CARGO_PKG_VERSION"))),
-        ("raywalk:command", command(shot, place, &settings)),
+        ("raywalk:command", command(shot, &settings)),
         ("raywalk:scene", scene),
         ("raywalk:camera", camera.to_string()),
         ("raywalk:settings", serde_json::Value::Object(values).to_string()),
     ];
+    if !place.turned.is_empty() {
+        let turned = place.turned.join("; ");
+        notes.push(("raywalk:lights", format!("{turned}; the command makes the picture with all as in the file")));
+    }
     if let Some(beside) = &shot.job.aspect.beside {
         notes.push(("raywalk:beside", format!("right of the divider: {}", beside.flags())));
     }
@@ -170,7 +177,8 @@ fn picture_rows() -> impl Iterator<Item = &'static Row> {
 }
 
 /// The command line that renders the same picture.
-fn command(shot: &Shot, place: &Place, settings: &Settings) -> String {
+fn command(shot: &Shot, settings: &Settings) -> String {
+    let place = &shot.place;
     let vector = |vector: Vec3| format!("{},{},{}", vector.x, vector.y, vector.z);
     let Camera { eye, look_at, up, fov, near, far } = shot.job.camera;
     let mut words = vec!["raywalk".to_owned(), "render".to_owned()];
@@ -227,25 +235,32 @@ mod tests {
     }
 
     fn shot(samples: Option<u32>) -> Shot {
-        Shot::new(&Film::new(8, 4, Planes::default()), &job(), samples)
+        Shot::new(&Film::new(8, 4, Planes::default()), &job(), samples, place(None))
     }
 
     fn place(file: Option<&str>) -> Place {
         let named =
             |name: &str, near| NamedCamera { name: name.to_owned(), camera: Camera { near, ..Camera::default() } };
-        Place { file: file.map(PathBuf::from), cameras: vec![named("default", 0.5), named("back door", 0.0)] }
+        Place {
+            file: file.map(PathBuf::from),
+            cameras: vec![named("default", 0.5), named("back door", 0.0)],
+            turned: Vec::new(),
+        }
     }
 
     #[test]
     fn the_command_says_all_that_the_picture_depends_on() {
-        let of = |shot: &Shot, place: &Place| command(shot, place, &shot.settings());
+        let of = |shot: Shot, place: Place| {
+            let shot = Shot { place, ..shot };
+            command(&shot, &shot.settings())
+        };
         let view = "--size 8x4 --camera 'back door' --eye 0,0,5 --look-at 0,0,0 --up 0,1,0 --fov 60 --fill color";
-        let as_set = of(&shot(None), &place(Some("a b.json")));
+        let as_set = of(shot(None), place(Some("a b.json")));
         assert_eq!(as_set, format!("raywalk render 'a b.json' {view} --render-scale 0.5"));
-        let refined = of(&shot(Some(SAMPLES)), &place(None));
+        let refined = of(shot(Some(SAMPLES)), place(None));
         assert_eq!(refined, format!("raywalk render {view} --supersample 16"));
-        let first = Place { cameras: place(None).cameras.split_off(1), file: None };
-        assert!(!of(&shot(None), &first).contains("--camera"));
+        let first = Place { cameras: place(None).cameras.split_off(1), ..place(None) };
+        assert!(!of(shot(None), first).contains("--camera"));
     }
 
     #[test]
@@ -268,8 +283,9 @@ mod tests {
         let folder = Folder::new();
         folder.write("walk-0001.png", b"of old");
         let name = name(&folder.0.join("walk-%04d.png")).expect("a number and .png");
+        let place = Place { turned: vec!["lamp: off".to_owned()], ..place(None) };
         for number in [2, 3] {
-            let news = errand(shot(Some(7)), place(None), name.clone())();
+            let news = errand(Shot { place: place.clone(), ..shot(Some(7)) }, name.clone())();
             let path = folder.0.join(format!("walk-000{number}.png"));
             assert_eq!(news, Some(News::Done(format!("screenshot: {}", path.display()))));
             let file = std::io::BufReader::new(std::fs::File::open(path).expect("there"));
@@ -283,6 +299,7 @@ mod tests {
             let settings: serde_json::Value = serde_json::from_str(&text("raywalk:settings")).expect("JSON");
             assert_eq!((settings["fill"].as_str(), settings.get("threads")), (Some("color"), None));
             assert!(text("raywalk:samples").starts_with("7 of 16"));
+            assert!(text("raywalk:lights").starts_with("lamp: off; "));
         }
         assert_eq!(std::fs::read(folder.0.join("walk-0001.png")).expect("there"), b"of old");
     }
@@ -291,7 +308,7 @@ mod tests {
     fn a_folder_that_is_not_there_is_told_of() {
         let folder = Folder::new();
         let name = name(&folder.0.join("missing/%d.png")).expect("a number and .png");
-        let Some(News::Problem(text)) = errand(shot(None), place(None), name)() else { panic!("written") };
+        let Some(News::Problem(text)) = errand(shot(None), name)() else { panic!("written") };
         assert!(text.contains("missing"), "{text}");
     }
 

@@ -43,7 +43,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A camera that the scene file names.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct NamedCamera {
     /// Its name in the file; the file's unnamed `camera` is called `default`.
     pub name: String,

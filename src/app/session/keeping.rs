@@ -1,6 +1,7 @@
 //! What outlasts the window: settings, pictures, and news of how writing them went.
 
 use super::Session;
+use crate::app::lighting::Dial;
 use crate::app::screenshot::{self, Place, Shot};
 use crate::app::{desktop, errands, walker};
 use std::path::Path;
@@ -27,7 +28,14 @@ impl Session {
     /// Keeps the picture on display as a file, or what it is about to become.
     pub(super) fn take_screenshot(&mut self, now: Instant) {
         let film = self.fresh.as_ref().map(|frame| &frame.film).or_else(|| self.presenter.frame());
-        let shot = film.zip(self.traced.as_ref()).map(|(film, (job, samples))| Shot::new(film, job, *samples));
+        let shot = film.zip(self.traced.as_ref()).map(|(film, (job, samples))| {
+            let place = Place {
+                file: self.scenes.file().map(Path::to_owned),
+                cameras: self.scene.cameras.clone(),
+                turned: self.lighting.dials().iter().filter_map(Dial::turned).collect(),
+            };
+            Shot::new(film, job, *samples, place)
+        });
         match shot.map(|shot| self.camerawork.ask(shot)) {
             None => self.notices.warn(now, "no picture yet"),
             Some(None) => self.notices.tell(now, "screenshot as soon as the picture has all its samples"),
@@ -36,8 +44,7 @@ impl Session {
     }
 
     pub(super) fn write(&self, shot: Shot) {
-        let place = Place { file: self.scenes.file().map(Path::to_owned), cameras: self.scene.cameras.clone() };
-        self.errands.run(screenshot::errand(shot, place, self.screenshots.clone()));
+        self.errands.run(screenshot::errand(shot, self.screenshots.clone()));
     }
 
     /// Tells what came of errands.
