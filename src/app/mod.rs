@@ -2,7 +2,8 @@
 //!
 //! The main thread runs the event loop: it gathers input, moves the walker, uploads, draws and presents, each a
 //! matter of milliseconds. Frames are traced on a thread of their own ([`tracer`]), so that neither input nor the
-//! overlay ever waits for one. Scenes are loaded on another ([`scenes`]); the one shown stays until the next stands. A search for cheap settings shares that thread and gives way to every frame ([`measuring`]).
+//! overlay ever waits for one; a search for cheap settings shares that thread and gives way to every frame
+//! ([`measuring`]). Scenes are loaded on another ([`scenes`]); the one shown stays until the next stands.
 //!
 //! Architecture invariant: with nothing moved and nothing changed, nothing is traced, drawn or woken up for.
 
@@ -39,6 +40,7 @@ mod measuring;
 mod pacing;
 mod session;
 mod steering;
+mod tally;
 mod tracer;
 mod viewer;
 mod views;
@@ -46,6 +48,7 @@ mod views;
 pub use config::UI_SCALES;
 pub use error::AppError;
 
+use crate::measure::Record;
 use crate::picture::NumberedName;
 use crate::scene::{Camera, LoadOptions};
 use crate::settings::Settings;
@@ -72,6 +75,8 @@ pub struct AppOptions {
     pub as_before: bool,
     /// Where screenshots go.
     pub screenshots: NumberedName,
+    /// Whether a record of the walk is wanted at the end.
+    pub tells: bool,
 }
 
 /// The scene that a window opens on.
@@ -85,7 +90,7 @@ pub enum Opening {
 }
 
 /// Where things stood when the user closed the window.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct AppExit {
     /// The last view.
     pub camera: Camera,
@@ -93,6 +98,8 @@ pub struct AppExit {
     pub settings: Settings,
     /// What could not be done at the end, one line each.
     pub warnings: Vec<String>,
+    /// What frames cost since scene, settings or size changed last, where that was asked for and there was one.
+    pub record: Option<Record>,
 }
 
 /// Opens the window and runs until it is closed. To be called on the main thread, once in a process.

@@ -5,18 +5,18 @@ use super::interrupt::Interrupt;
 use super::options::Options;
 use super::output::{self, Output};
 use super::progress::Progress;
+use super::record::RecordTarget;
 use super::stage::Stage;
 use super::{Failure, stdout};
 use clap::ArgMatches;
 use raywalk::app::maps::Map;
-use raywalk::math::simd::SimdToken;
 use raywalk::measure::record::Subject;
 use raywalk::measure::run::{WARM_UP_FRAMES, timed_frame};
 use raywalk::measure::{MotionMeter, Record, Run};
-use raywalk::picture::{PendingFile, WriteOptions};
-use raywalk::render::{Film, Planes, Scratch, render_frame, thread_count};
+use raywalk::picture::WriteOptions;
+use raywalk::render::{Film, Planes, Scratch, render_frame};
 use raywalk::settings::{Settings, Visibility};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Renders what `asked` says.
 pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
@@ -148,36 +148,7 @@ impl Reference {
 }
 
 fn record_of(stage: &Stage, run: &Run, reference: Option<&Reference>) -> Record {
-    let build_ms = stage.loaded.scene.build_ms;
-    let subject = Subject {
-        scene: &stage.loaded.scene,
-        settings: &stage.settings,
-        width: stage.size.width,
-        height: stage.size.height,
-        load_ms: stage.loaded.total_ms - build_ms,
-        build_ms,
-        threads: thread_count(stage.settings.threads),
-        simd: SimdToken::new(stage.settings.simd).unwrap_or_else(SimdToken::best).name(),
-    };
+    let Stage { loaded, size, settings, .. } = stage;
+    let subject = Subject::new(&loaded.scene, settings, (size.width, size.height), loaded.total_ms);
     Record::new(subject, run, reference.map(|reference| &reference.meter))
-}
-
-/// Where the record of the run goes.
-enum RecordTarget {
-    Stdout,
-    File(PendingFile),
-}
-
-impl RecordTarget {
-    fn prepare(name: &str) -> Result<Self, Failure> {
-        Ok(if name == "-" { Self::Stdout } else { Self::File(PendingFile::create(Path::new(name))?) })
-    }
-
-    fn write(self, record: &Record) -> Result<(), Failure> {
-        let text = stdout::json(record)?;
-        match self {
-            Self::Stdout => stdout::print(&text),
-            Self::File(file) => Ok(file.commit(|sink| Ok(writeln!(sink, "{text}")?))?),
-        }
-    }
 }

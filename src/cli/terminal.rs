@@ -2,6 +2,8 @@
 
 use super::Failure;
 use super::interrupt::Interrupt;
+use super::options::Options;
+use super::view::tell;
 use clap::ArgMatches;
 use raywalk::app::scenes::Arrival;
 use raywalk::app::terminal::{self, End};
@@ -12,6 +14,7 @@ pub fn walk(
     asked: &ArgMatches,
     arrival: &Arrival,
     mut settings: Settings,
+    options: &Options,
     interrupt: &Interrupt,
 ) -> Result<(), Failure> {
     // So few pixels can do with more rays each.
@@ -20,8 +23,9 @@ pub fn walk(
     }
     // The walk listens itself, and gives the terminal back before it ends.
     interrupt.careful();
-    let end = terminal::run(&arrival.scene, arrival.camera, settings)?;
+    let (end, record) = terminal::run(arrival, settings, options.stats.is_some())?;
     interrupt.check()?;
+    tell(options, record.as_ref())?;
     match end {
         End::Quit => Ok(()),
         End::Interrupted => Err(Failure::Interrupted),

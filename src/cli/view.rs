@@ -4,6 +4,7 @@ use super::frames::Frames;
 use super::interrupt::Interrupt;
 use super::options::{Options, named_preset, with_flags};
 use super::output::{self, Output};
+use super::record::RecordTarget;
 use super::stage::{DEFAULT_SIZE, Loaded, Stage};
 use super::values::Size;
 use super::{Failure, render, stdout};
@@ -11,6 +12,7 @@ use clap::ArgMatches;
 use raywalk::app::config::{Config, Store, usual_settings};
 use raywalk::app::scenes::{Arrival, Failed, Load, Outcome};
 use raywalk::app::{self, AppError, AppOptions, Opening, screenshot, terminal};
+use raywalk::measure::Record;
 use raywalk::picture::{NumberedName, WriteOptions};
 use raywalk::scene::LoadOptions;
 use raywalk::settings::Settings;
@@ -35,6 +37,8 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     let screenshots = screenshots(asked, &config, options.reading.quiet);
     output::check_planes(Some(Path::new(PICTURE)), options.planes)?;
     let frames = Frames::of(&options)?;
+    // Better known now than after the walk.
+    options.stats.as_deref().map(RecordTarget::prepare).transpose()?;
     let interrupt = Interrupt::listen()?;
     let load = load(&options)?;
     let size = options.view.size.unwrap_or(DEFAULT_SIZE);
@@ -60,6 +64,7 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
         config,
         store,
         screenshots,
+        tells: options.stats.is_some(),
     };
     // No window wanted, or none to be had.
     let reason = if in_terminal {
@@ -73,8 +78,7 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
                 if !options.reading.quiet {
                     end.warnings.iter().for_each(|warning| stdout::note(&format!("warning: {warning}")));
                 }
-                tell_of_stats(&options);
-                return Ok(());
+                return tell(&options, end.record.as_ref());
             }
         }
     };
@@ -84,9 +88,8 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     };
     match reason.filter(|_| !terminal::is_there()) {
         None => {
-            super::terminal::walk(asked, &arrival, settings(asked, &usual_settings())?, &interrupt)?;
-            tell_of_stats(&options);
-            Ok(())
+            let settings = settings(asked, &usual_settings())?;
+            super::terminal::walk(asked, &arrival, settings, &options, &interrupt)
         }
         Some(reason) => {
             // A still picture has no hurry: it is what `render` makes of the same words.
@@ -105,10 +108,15 @@ fn settings(asked: &ArgMatches, own: &Settings) -> Result<Settings, Failure> {
     with_flags(asked, start)
 }
 
-/// A walk has no figures of its run.
-fn tell_of_stats(options: &Options) {
-    if options.stats.is_some() && !options.reading.quiet {
-        stdout::note("warning: a walk has no --stats; raywalk render writes them");
+/// Writes the record of a walk, if it was asked for.
+pub fn tell(options: &Options, record: Option<&Record>) -> Result<(), Failure> {
+    match (&options.stats, record) {
+        (Some(name), Some(record)) => RecordTarget::prepare(name)?.write(record),
+        (Some(_), None) if !options.reading.quiet => {
+            stdout::note("warning: no --stats: the walk ended before the first frame");
+            Ok(())
+        }
+        _ => Ok(()),
     }
 }
 
@@ -125,6 +133,7 @@ fn load(options: &Options) -> Result<Load, Failure> {
             scene: stage.loaded.scene,
             file: options.reading.scene,
             files: files.files(),
+            load_ms: stage.loaded.total_ms,
             size: Some((width, height)),
         })
     }))

@@ -5,19 +5,20 @@ use super::motion::{Motion, MotionMeter, RunError};
 use super::run::{CpuTime, Run};
 use super::statistics::Spread;
 use super::system::peak_rss_bytes;
-use crate::render::FrameStats;
+use crate::math::simd::SimdToken;
+use crate::render::{FrameStats, thread_count};
 use crate::scene::Scene;
 use crate::settings::{ROWS, Settings};
 use serde::Serialize;
 use serde_json::Value;
 
 /// What was rendered and how long its preparation took.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Subject<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// The settings, resolved: nothing is left to the scene or the machine.
-    pub settings: &'a Settings,
+    pub settings: Settings,
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
@@ -82,6 +83,22 @@ struct Certificates {
     mirrored_rays: Value,
 }
 
+impl<'a> Subject<'a> {
+    /// Of a scene that took `total_ms` milliseconds to read and build; what `settings` leave to it is filled in.
+    pub fn new(scene: &'a Scene, settings: &Settings, (width, height): (u32, u32), total_ms: f64) -> Self {
+        Self {
+            scene,
+            settings: Settings { depth: settings.depth.or(Some(scene.render.max_depth)), ..settings.clone() },
+            width,
+            height,
+            load_ms: total_ms - scene.build_ms,
+            build_ms: scene.build_ms,
+            threads: thread_count(settings.threads),
+            simd: SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best).name(),
+        }
+    }
+}
+
 impl Certificates {
     fn of(run: &Run) -> Self {
         let FrameStats { pixels, certificates, .. } = run.total();
@@ -109,7 +126,7 @@ impl Record {
             frames: run.frames(),
             threads,
             simd,
-            settings: settings_json(settings),
+            settings: settings_json(&settings),
             load_ms,
             build_ms,
             frame_ms: run.frame_ms(),

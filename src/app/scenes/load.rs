@@ -23,6 +23,8 @@ pub struct Arrival {
     pub file: Option<PathBuf>,
     /// The files that the load looked at.
     pub files: Vec<SeenFile>,
+    /// Milliseconds it took to read and build.
+    pub load_ms: f64,
     /// Size of the window's inside that it asks for, in physical pixels.
     pub size: Option<(u32, u32)>,
 }
@@ -139,7 +141,14 @@ mod tests {
 
     fn arrival() -> Arrival {
         let scene = load_text("a.json", r#"{"version": 1}"#, &LoadOptions::default()).expect("right");
-        Arrival { camera: scene.cameras[0].camera, scene: Arc::new(scene), file: None, files: Vec::new(), size: None }
+        Arrival {
+            camera: scene.cameras[0].camera,
+            scene: Arc::new(scene),
+            file: None,
+            files: Vec::new(),
+            load_ms: 0.0,
+            size: None,
+        }
     }
 
     #[test]

@@ -390,12 +390,14 @@ impl Drop for Scenes {
 
 fn load_file(path: &Path, options: &LoadOptions) -> Outcome {
     let file = folder::scene_file(path)?;
+    let began = Instant::now();
     let scene = scene::load(&file, options)?;
     Ok(Arrival {
         camera: scene.cameras[0].camera,
         scene: Arc::new(scene),
         file: Some(file),
         files: options.progress.files(),
+        load_ms: 1e3 * began.elapsed().as_secs_f64(),
         size: None,
     })
 }

@@ -29,6 +29,7 @@ use crate::app::scenes::Scenes;
 use crate::app::screenshot::Camerawork;
 use crate::app::steering::Steering;
 use crate::app::survey::Survey;
+use crate::app::tally::Tally;
 use crate::app::tracer::{Job, TracedFrame, Tracer};
 use crate::app::viewer::Call;
 use crate::app::walker::Walker;
@@ -63,6 +64,8 @@ pub struct Session {
     scenes: Scenes,
     /// The scene as it was loaded, and as it is lit.
     scene: Arc<Scene>,
+    /// Milliseconds it took to load.
+    load_ms: f64,
     lit: Arc<Scene>,
     lighting: Lighting,
     inspection: Option<Inspection>,
@@ -76,6 +79,8 @@ pub struct Session {
     pointer: DVec2,
     history: History,
     stats: FrameStats,
+    /// What a record at the end is made of, where one is wanted.
+    tally: Option<Tally>,
     shown: Shown,
     notices: Notices,
     keeper: Keeper,
@@ -117,16 +122,16 @@ impl Session {
         let wake = Arc::clone(&call);
         let mut scenes =
             Scenes::new(options.load.clone(), options.config.recent.clone(), Arc::new(move || wake(Call::Scenes)));
-        let (scene, camera) = match &options.opening {
+        let (scene, camera, load_ms) = match &options.opening {
             Opening::Scene(arrival) => {
                 scenes.show(arrival);
-                (Arc::clone(&arrival.scene), arrival.camera)
+                (Arc::clone(&arrival.scene), arrival.camera, arrival.load_ms)
             }
             Opening::Loading(load, file) => {
                 scenes.expect(load.clone(), file.clone());
                 let nothing = scene::nothing().map_err(|error| AppError::NoScene(error.into()))?;
                 let camera = nothing.cameras[0].camera;
-                (Arc::new(nothing), camera)
+                (Arc::new(nothing), camera, 0.0)
             }
         };
         let attributes = Window::default_attributes().with_title(title(&scene));
@@ -161,6 +166,7 @@ impl Session {
             lighting: Lighting::of(&scene),
             lit: Arc::clone(&scene),
             scene,
+            load_ms,
             inspection: None,
             keys: Keys::default(),
             labels: Labels::default(),
@@ -169,6 +175,7 @@ impl Session {
             pointer: DVec2::ZERO,
             history: History::default(),
             stats: FrameStats::default(),
+            tally: options.tells.then(Tally::default),
             shown: Shown { panel: config.panel, ..Shown::default() },
             notices: Notices::default(),
             ui_scale: config.ui_scale,
@@ -208,7 +215,8 @@ impl Session {
             errands::News::Problem(text) => Some(text),
             errands::News::Done(_) => None,
         });
-        AppExit { camera, settings, warnings: warnings.collect() }
+        let record = self.tally.and_then(|tally| tally.record(self.load_ms));
+        AppExit { camera, settings, warnings: warnings.collect(), record }
     }
 
     /// Takes the newest frame from the tracer, to be shown when it is time, and what a search has come to.
@@ -238,7 +246,11 @@ impl Session {
             }
             let present = self.stats.stages_ms.present;
             self.stats = frame.stats.clone();
+            // Of the one before: this one is still to be presented.
             self.stats.stages_ms.present = present;
+            if let Some(tally) = &mut self.tally {
+                tally.add(&frame, &self.stats);
+            }
         }
         let before = self.traced.replace((frame.job.clone(), frame.samples));
         if frame.job.aspect.is_exact {

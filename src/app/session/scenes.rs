@@ -25,7 +25,7 @@ impl Session {
         while let Some(news) = self.scenes.news() {
             match news {
                 News::Opened(arrival) => self.enter(arrival),
-                News::Reloaded(arrival) => self.replace_scene(arrival.scene),
+                News::Reloaded(arrival) => self.replace_scene(arrival),
                 News::Nothing(failed) => return Err(AppError::NoScene(failed)),
             }
         }
@@ -34,7 +34,8 @@ impl Session {
     }
 
     /// Goes to another scene.
-    pub(super) fn enter(&mut self, Arrival { scene, camera, size, .. }: Arrival) {
+    pub(super) fn enter(&mut self, Arrival { scene, camera, load_ms, size, .. }: Arrival) {
+        self.load_ms = load_ms;
         self.walker.enter(&scene, camera);
         self.lighting = Lighting::of(&scene);
         if let Some((width, height)) = size.filter(|_| !self.is_placed) {
@@ -45,7 +46,8 @@ impl Session {
     }
 
     /// Shows what the scene has become, from where the walker stands.
-    pub(super) fn replace_scene(&mut self, scene: Arc<Scene>) {
+    pub(super) fn replace_scene(&mut self, Arrival { scene, load_ms, .. }: Arrival) {
+        self.load_ms = load_ms;
         let home = self.walker.home();
         let named = self.scene.cameras.iter().position(|named| named.camera == home);
         if let Some(moved) = named.and_then(|index| scene.cameras.get(index)) {

@@ -31,10 +31,10 @@ mod session;
 mod signals;
 
 use super::AppError;
-use crate::scene::{Camera, Scene};
+use super::scenes::Arrival;
+use crate::measure::Record;
 use crate::settings::Settings;
 use std::io::IsTerminal;
-use std::sync::Arc;
 
 /// What ended the walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,11 +53,12 @@ pub fn is_there() -> bool {
     std::io::stdin().is_terminal() && std::io::stdout().is_terminal() && !is_dumb
 }
 
-/// Walks through `scene` from `camera` until the user leaves, with `settings` at first.
+/// Walks through what was loaded until the user leaves, with `settings` at first. Returns what ended the walk, and where
+/// it `tells` and there was one, what frames cost since settings or size changed last.
 ///
 /// # Errors
 /// [`AppError::Terminal`] when the terminal refuses or goes away; [`AppError::TracerGone`] and [`AppError::NoThread`] as
 /// for a window. The terminal is given back as it was in any case.
-pub fn run(scene: &Arc<Scene>, camera: Camera, settings: Settings) -> Result<End, AppError> {
-    session::run(scene, camera, settings)
+pub fn run(arrival: &Arrival, settings: Settings, tells: bool) -> Result<(End, Option<Record>), AppError> {
+    session::run(arrival, settings, tells)
 }

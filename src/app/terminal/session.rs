@@ -16,9 +16,12 @@ use crate::app::AppError;
 use crate::app::history::History;
 use crate::app::lowering::Lowering;
 use crate::app::methods::Aspect;
+use crate::app::scenes::Arrival;
+use crate::app::tally::Tally;
 use crate::app::tracer::{Job, TracedFrame, Tracer, Word};
 use crate::app::walker::Walker;
-use crate::scene::{Camera, Scene};
+use crate::measure::Record;
+use crate::scene::Scene;
 use crate::settings::{PRESETS, Preset, Settings};
 use glam::DVec2;
 use std::sync::Arc;
@@ -57,7 +60,7 @@ enum Step {
 }
 
 /// See [`run`](super::run).
-pub fn run(scene: &Arc<Scene>, camera: Camera, settings: Settings) -> Result<End, AppError> {
+pub fn run(arrival: &Arrival, settings: Settings, tells: bool) -> Result<(End, Option<Record>), AppError> {
     let (sender, messages) = channel();
     // Dropped last, when the terminal is given back.
     let signals = sender.clone();
@@ -68,10 +71,12 @@ pub fn run(scene: &Arc<Scene>, camera: Camera, settings: Settings) -> Result<End
     let _reading = Reading::start(screen.reader(), sender.clone()).map_err(AppError::NoThread)?;
     let word = move |word| sender.send(Message::Tracer(word)).unwrap_or(());
     let tracer = Tracer::start(INTERVAL, word)?;
-    let mut session = Session::new(scene, camera, settings, screen, tracer);
+    let mut session = Session::new(arrival, settings, screen, tracer);
+    session.tally = tells.then(Tally::default);
     let end = session.walk(&messages);
     session.settle(&messages);
-    end
+    let record = session.tally.and_then(|tally| tally.record(arrival.load_ms));
+    Ok((end?, record))
 }
 
 /// Everything that lives as long as the walk. Dropped from the top: the tracer is joined before the terminal goes.
@@ -88,6 +93,8 @@ struct Session {
     walker: Walker,
     settings: Settings,
     history: History,
+    /// What a record at the end is made of, where one is wanted.
+    tally: Option<Tally>,
     posted: Option<Job>,
     /// A frame to be shown when the terminal has shown those before.
     fresh: Option<TracedFrame>,
@@ -102,7 +109,8 @@ struct Session {
 }
 
 impl Session {
-    fn new(scene: &Arc<Scene>, camera: Camera, settings: Settings, screen: Screen, tracer: Tracer) -> Self {
+    fn new(arrival: &Arrival, settings: Settings, screen: Screen, tracer: Tracer) -> Self {
+        let scene = &arrival.scene;
         let abilities = screen.abilities();
         Self {
             tracer,
@@ -113,9 +121,10 @@ impl Session {
             size: screen.size(),
             screen,
             scene: scene.clone(),
-            walker: Walker::in_scene(scene, camera),
+            walker: Walker::in_scene(scene, arrival.camera),
             settings,
             history: History::default(),
+            tally: None,
             posted: None,
             fresh: None,
             shown: None,
@@ -288,7 +297,11 @@ impl Session {
     }
 
     fn fetch_frame(&mut self) {
-        if let Some(missed) = self.tracer.take().and_then(|frame| self.fresh.replace(frame)) {
+        let Some(frame) = self.tracer.take() else { return };
+        if let Some(tally) = self.tally.as_mut().filter(|_| frame.samples.is_none()) {
+            tally.add(&frame, &frame.stats);
+        }
+        if let Some(missed) = self.fresh.replace(frame) {
             self.tracer.recycle(missed.film);
         }
     }

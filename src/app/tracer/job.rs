@@ -44,7 +44,7 @@ impl Job {
     }
 
     /// Whether a frame of `other` shows this one from elsewhere: worth finishing while the walker moves.
-    fn differs_by_camera_only(&self, other: &Self) -> bool {
+    pub fn differs_by_camera_only(&self, other: &Self) -> bool {
         let what = |job: &Self| (job.width, job.height, job.aspect.map, job.aspect.is_exact);
         self.scene == other.scene
             && self.settings == other.settings
@@ -72,6 +72,8 @@ pub struct TracedFrame {
     pub film: Film,
     /// What it cost.
     pub stats: FrameStats,
+    /// CPU time of the process while it was traced, in milliseconds.
+    pub cpu_ms: f64,
     /// When it was done.
     pub finished: Instant,
     /// What it shows.

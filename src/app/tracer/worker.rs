@@ -7,6 +7,7 @@ use crate::app::measuring::{Inquiry, Measuring};
 use crate::app::views::Views;
 use crate::render::{CancelToken, Film};
 use crate::scene::Scene;
+use cpu_time::ProcessTime;
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -80,10 +81,10 @@ impl Worker {
     /// Traces a frame and puts it into the box; false for one that was dropped on the way.
     pub fn trace(&self, job: Job, render: Render<'_>, views: &mut Views) -> bool {
         let mut film = self.film_for(&job);
+        let cpu = ProcessTime::now();
         let stats = render(&job, &mut film);
-        let completed = stats.completed;
-        let mut frame =
-            TracedFrame { film, stats, finished: Instant::now(), job, samples: None, beside: None, legend: None };
+        let (cpu_ms, finished, completed) = (1e3 * cpu.elapsed().as_secs_f64(), Instant::now(), stats.completed);
+        let mut frame = TracedFrame { film, stats, cpu_ms, finished, job, samples: None, beside: None, legend: None };
         let completed = completed && views.complete(&mut frame, &|job| self.film_for(job), render);
         let mut exchange = self.shared.lock();
         exchange.running = None;
@@ -111,7 +112,8 @@ impl Worker {
         let mut film = self.film_for(job);
         film.copy_rgba(refined);
         let (finished, job) = (Instant::now(), job.clone());
-        let frame = TracedFrame { film, stats, finished, job, samples, beside: None, legend: None };
+        // Of one pass of many, the time says nothing.
+        let frame = TracedFrame { film, stats, cpu_ms: 0.0, finished, job, samples, beside: None, legend: None };
         self.shared.lock().put(frame);
         true
     }
