@@ -12,7 +12,11 @@ pub struct Direct {
     /// The surface stores blue first.
     swaps: bool,
     overlay: Raster,
+    cover: Cover,
+    /// What was shown last. Pixels that the overlay hides stay from one frame to the next.
     bytes: Vec<u8>,
+    /// Whether the overlay's own pixels are there.
+    has_overlay: bool,
 }
 
 impl Direct {
@@ -27,7 +31,7 @@ impl Direct {
     }
 
     fn with_order(swaps: bool) -> Self {
-        Self { swaps, overlay: Raster::default(), bytes: Vec::new() }
+        Self { swaps, overlay: Raster::default(), cover: Cover::default(), bytes: Vec::new(), has_overlay: false }
     }
 
     /// Paints the overlay to show.
@@ -35,6 +39,8 @@ impl Direct {
         self.overlay.set_textures(textures);
         self.overlay.paint(job);
         self.overlay.free_textures(textures);
+        self.cover.see(&self.overlay);
+        self.has_overlay = false;
     }
 
     /// Joins `frame` and the overlay at the size of `target` and copies them there.
@@ -56,58 +62,123 @@ impl Direct {
     }
 
     fn join_ordered(&mut self, frame: Option<&Film>, width: u32, height: u32, order: impl Fn(Pixel) -> Pixel) {
-        self.bytes.resize(width as usize * height as usize * 4, 0);
-        let overlay = self.overlay.used().filter(|_| self.overlay.size() == [width, height]);
+        let size = width as usize * height as usize * 4;
+        // An overlay of another size waits for the one of this.
+        let is_of_this_size = self.overlay.size() == [width, height];
+        self.has_overlay &= is_of_this_size && self.bytes.len() == size;
+        self.bytes.resize(size, 0);
         for (y, row) in (0..height).zip(self.bytes.as_chunks_mut().0.chunks_exact_mut(width as usize)) {
-            match frame {
-                Some(film) => copy_row(row, film, y, height, |[r, g, b, _]| order([r, g, b, 255])),
-                None => row.fill([0; 4]),
+            let source = frame.map(|film| FilmRow::new(film, y, [width, height]));
+            let copy = |pixels: &mut [Pixel], start: usize| match &source {
+                Some(source) => source.copy(pixels, start, |[r, g, b, _]| order([r, g, b, 255])),
+                None => pixels.fill([0; 4]),
+            };
+            let mut copied = 0;
+            for span in self.cover.row(y).iter().filter(|_| is_of_this_size) {
+                let (start, end) = (span.start as usize, span.end as usize);
+                let overlay = self.overlay.row(y)[start..end].iter().map(|color| order(color.to_array()));
+                if span.is_opaque {
+                    copy(&mut row[copied..start], copied);
+                    if !self.has_overlay {
+                        row[start..end].iter_mut().zip(overlay).for_each(|(pixel, color)| *pixel = color);
+                    }
+                } else {
+                    copy(&mut row[copied..end], copied);
+                    row[start..end].iter_mut().zip(overlay).for_each(|(pixel, color)| *pixel = over(color, *pixel));
+                }
+                copied = end;
             }
-            let Some([left, top, covered, rows]) = overlay else { continue };
-            if (top..top + rows).contains(&y) {
-                let covered = left as usize..(left + covered) as usize;
-                lay_row(&mut row[covered.clone()], &self.overlay.row(y)[covered], &order);
-            }
+            copy(&mut row[copied..], copied);
         }
+        self.has_overlay = is_of_this_size;
     }
 }
 
 /// One pixel, four channels with alpha last.
 type Pixel = [u8; 4];
 
-/// Pixels that are looked at together: most of a panel hides all of what is below.
-const RUN: usize = 16;
+/// Pixels side by side that the overlay shows something of itself on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Span {
+    start: u32,
+    end: u32,
+    /// Nothing of the frame shows through.
+    is_opaque: bool,
+}
 
-/// A row of the overlay over one of the picture.
-fn lay_row(row: &mut [Pixel], overlay: &[Color32], order: impl Fn(Pixel) -> Pixel) {
-    for (pixels, colors) in row.chunks_mut(RUN).zip(overlay.chunks(RUN)) {
-        let pairs = pixels.iter_mut().zip(colors.iter().map(|color| color.to_array()));
-        let (all, any) = colors
-            .iter()
-            .fold((u8::MAX, false), |(all, any), color| (all & color.a(), any | (*color != Color32::TRANSPARENT)));
-        match (all, any) {
-            (u8::MAX, _) => pairs.for_each(|(pixel, color)| *pixel = order(color)),
-            (_, false) => {}
-            _ => pairs.for_each(|(pixel, color)| *pixel = over(order(color), *pixel)),
+/// Where the overlay covers the frame, row by row: looked for once an overlay, and not in every frame.
+#[derive(Debug, Default)]
+struct Cover {
+    spans: Vec<Span>,
+    /// Where each row's spans end.
+    ends: Vec<usize>,
+}
+
+impl Cover {
+    /// Takes note of what `overlay` covers.
+    fn see(&mut self, overlay: &Raster) {
+        self.spans.clear();
+        self.ends.clear();
+        let [left, top, width, height] = overlay.used().unwrap_or_default();
+        self.ends.resize(top as usize, 0);
+        for y in top..top + height {
+            let row = &overlay.row(y)[left as usize..][..width as usize];
+            let mut start = left;
+            for same in row.chunk_by(|a, b| kind(*a) == kind(*b)) {
+                let end = start + same.len() as u32;
+                if let Some(is_opaque) = kind(same[0]) {
+                    self.spans.push(Span { start, end, is_opaque });
+                }
+                start = end;
+            }
+            self.ends.push(self.spans.len());
+        }
+    }
+
+    /// The spans of a row, from left to right.
+    fn row(&self, y: u32) -> &[Span] {
+        let end_of = |row: Option<usize>| row.and_then(|row| self.ends.get(row)).copied();
+        let end = end_of(Some(y as usize)).unwrap_or(0);
+        &self.spans[end_of((y as usize).checked_sub(1)).unwrap_or(0).min(end)..end]
+    }
+}
+
+/// Whether a pixel of the overlay hides what is below it; `None` where there is nothing of it.
+fn kind(color: Color32) -> Option<bool> {
+    (color != Color32::TRANSPARENT).then(|| color.a() == 255)
+}
+
+/// A row of the picture; of a film of another size, each pixel is the nearest one.
+struct FilmRow<'a> {
+    pixels: &'a [Pixel],
+    width: usize,
+}
+
+impl<'a> FilmRow<'a> {
+    /// Row `y` of a picture of `width` times `height` pixels.
+    fn new(film: &'a Film, y: u32, [width, height]: [u32; 2]) -> Self {
+        let row = scaled(y as usize, film.height(), height as usize);
+        let pixels = &film.rgba().as_chunks().0[row * film.width() as usize..][..film.width() as usize];
+        Self { pixels, width: width as usize }
+    }
+
+    /// Copies the pixels from `start` on.
+    fn copy(&self, pixels: &mut [Pixel], start: usize, order: impl Fn(Pixel) -> Pixel) {
+        if self.pixels.len() == self.width {
+            for (pixel, &source) in pixels.iter_mut().zip(&self.pixels[start..]) {
+                *pixel = order(source);
+            }
+        } else {
+            for (x, pixel) in (start..).zip(pixels) {
+                *pixel = order(self.pixels[scaled(x, self.pixels.len() as u32, self.width)]);
+            }
         }
     }
 }
 
-/// One row of the picture; a film of another size is stretched, each pixel from the nearest one.
-fn copy_row(row: &mut [Pixel], film: &Film, y: u32, height: u32, order: impl Fn(Pixel) -> Pixel) {
-    let scaled = |at: usize, from: u32, to: usize| at * from as usize / to;
-    let film_row = scaled(y as usize, film.height(), height as usize);
-    let source = &film.rgba().as_chunks().0[film_row * film.width() as usize..][..film.width() as usize];
-    if source.len() == row.len() {
-        for (pixel, &source) in row.iter_mut().zip(source) {
-            *pixel = order(source);
-        }
-    } else {
-        let width = row.len();
-        for (x, pixel) in row.iter_mut().enumerate() {
-            *pixel = order(source[scaled(x, film.width(), width)]);
-        }
-    }
+/// The nearest of `from` places to place `at` of `to`.
+fn scaled(at: usize, from: u32, to: usize) -> usize {
+    at * from as usize / to
 }
 
 /// With red and blue exchanged. By shifts of a whole word: of these a compiler without byte shuffles at hand still
@@ -120,6 +191,7 @@ fn swapped(rgba: Pixel) -> Pixel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::SplitMix64;
     use crate::render::Planes;
     use egui::epaint::{ClippedPrimitive, ImageDelta, Mesh, Primitive, TextureId, textures::TextureOptions};
     use egui::{ColorImage, Rect, pos2, vec2};
@@ -146,6 +218,62 @@ mod tests {
             direct.join(Some(&film), 12, 8);
             assert_eq!(direct.bytes.len(), 12 * 8 * 4);
             assert_eq!(&direct.bytes[4 * (12 * 2 + 2)..][..4], [0, 0, 0, 255], "an overlay of the old size waits");
+        }
+    }
+    /// An overlay of some rectangles, some of them see-through.
+    fn overlay(random: &mut SplitMix64, size: [u32; 2]) -> PaintJob {
+        let mut mesh = Mesh::default();
+        for _ in 0..random.within(0.0, 5.0) as usize {
+            let mut at = |most: u32| random.within(-2.0, f64::from(most)) as f32;
+            let (corner, extent) = (pos2(at(size[0]), at(size[1])), vec2(at(size[0]), at(size[1])));
+            let level = random.within(0.0, 200.0) as u8;
+            let alpha = if random.within(0.0, 1.0) < 0.5 { 255 } else { level };
+            let color = Color32::from_rgba_premultiplied(level, level / 2, level / 3, alpha);
+            mesh.add_colored_rect(Rect::from_min_size(corner, extent), color);
+        }
+        let primitive = ClippedPrimitive { clip_rect: Rect::EVERYTHING, primitive: Primitive::Mesh(mesh) };
+        PaintJob { primitives: vec![primitive], size, pixels_per_point: 1.0 }
+    }
+
+    fn film(random: &mut SplitMix64, [width, height]: [u32; 2]) -> Film {
+        let mut film = Film::new(width, height, Planes::default());
+        film.paint(|_, _, _, _| [0; 3].map(|_| random.within(0.0, 256.0) as u8));
+        film
+    }
+
+    #[test]
+    fn any_run_of_frames_overlays_and_sizes_is_joined_as_pixel_by_pixel() {
+        let mut random = SplitMix64(11);
+        let mut textures = TexturesDelta::default();
+        let white = ColorImage::filled([1, 1], Color32::WHITE);
+        textures.push(TextureId::default(), ImageDelta::full(white, TextureOptions::LINEAR));
+        let mut direct = Direct::with_order(true);
+        // Two of them have as many pixels.
+        let sizes = [[24, 10], [12, 20], [17, 9]];
+        let (mut size, mut frame) = (sizes[0], None);
+        for step in 0..400 {
+            match random.within(0.0, 5.0) as u32 {
+                0 => size = sizes[random.within(0.0, 3.0) as usize],
+                1 => direct.set_overlay(&overlay(&mut random, size), &mut textures),
+                _ => {
+                    let size = sizes[random.within(0.0, 3.0) as usize];
+                    frame = Some(film(&mut random, size));
+                }
+            }
+            let [width, height] = size;
+            direct.join(frame.as_ref(), width, height);
+            for (at, pixel) in direct.bytes.as_chunks::<4>().0.iter().enumerate() {
+                let (x, y) = (at % width as usize, at / width as usize);
+                let mut expected = frame.as_ref().map_or([0; 4], |film| {
+                    let place = |at: usize, from: u32, to: u32| at * from as usize / to as usize;
+                    let (column, row) = (place(x, film.width(), width), place(y, film.height(), height));
+                    swapped(film.rgba().as_chunks().0[row * film.width() as usize + column])
+                });
+                if direct.overlay.size() == size {
+                    expected = over(swapped(direct.overlay.row(y as u32)[x].to_array()), expected);
+                }
+                assert_eq!(*pixel, expected, "pixel {x}, {y} of step {step}");
+            }
         }
     }
 }
