@@ -102,7 +102,8 @@ impl Exam {
     /// Takes over what an earlier exam of the same settings and the same view came to in the other subject.
     pub fn with_answers_of(mut self, earlier: Option<&Self>) -> Self {
         if let Some(earlier) = earlier.filter(|earlier| {
-            earlier.camera == self.camera && of_frames(&earlier.settings, 0) == of_frames(&self.settings, 0)
+            (earlier.camera, earlier.size) == (self.camera, self.size)
+                && of_frames(&earlier.settings, 0) == of_frames(&self.settings, 0)
         }) {
             match self.subject {
                 Subject::Errors => self.costs.clone_from(&earlier.costs),
@@ -285,7 +286,9 @@ mod tests {
         assert_eq!(exam.costs.len(), 3);
         let next = Exam::new(Subject::Errors, exam.camera, exam.settings.clone(), exam.size);
         assert_eq!(next.clone().with_answers_of(Some(&exam)).costs, exam.costs);
-        let elsewhere = Exam { camera: Camera { fov: 7.0, ..exam.camera }, ..next };
+        let elsewhere = Exam { camera: Camera { fov: 7.0, ..exam.camera }, ..next.clone() };
         assert!(elsewhere.with_answers_of(Some(&exam)).costs.is_empty());
+        let larger = Exam { size: (32, 32), ..next };
+        assert!(larger.with_answers_of(Some(&exam)).costs.is_empty());
     }
 }

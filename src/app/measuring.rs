@@ -34,10 +34,10 @@ pub struct Search {
     pub stop: bool,
     /// One of its frames is being traced.
     pub in_frame: bool,
-    /// What is known of a search by now, to be taken once.
-    pub survey: Option<Survey>,
-    /// What is known of an exam by now, to be taken once.
-    pub exam: Option<Exam>,
+    /// What is known of a search by now, and in which scene, to be taken once.
+    pub survey: Option<(Arc<Scene>, Survey)>,
+    /// What is known of an exam by now, and in which scene, to be taken once.
+    pub exam: Option<(Arc<Scene>, Exam)>,
 }
 
 /// The studio of what is measured on a thread that it shares with the window's frames.
@@ -95,12 +95,12 @@ impl<'a> Measuring<'a> {
     }
 
     fn publish(&self) {
-        self.worker.shared.lock().search.survey = self.survey.clone();
+        self.worker.shared.lock().search.survey = self.survey.clone().map(|survey| (Arc::clone(&self.scene), survey));
         (self.word)(Word::Frame);
     }
 
     fn publish_exam(&self, exam: &Exam) {
-        self.worker.shared.lock().search.exam = Some(exam.clone());
+        self.worker.shared.lock().search.exam = Some((Arc::clone(&self.scene), exam.clone()));
         (self.word)(Word::Frame);
     }
 

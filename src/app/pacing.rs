@@ -21,8 +21,8 @@ impl Rates {
     /// For a monitor of `millihertz` (where known), drawn by a software adapter or not.
     pub fn new(millihertz: Option<u32>, software: bool) -> Self {
         let rate = millihertz.map_or(USUAL_RATE, |rate| f64::from(rate) / 1e3).clamp(30.0, 240.0);
-        // Drawing the overlay in software costs as much as tracing a small frame.
-        let figures = if software { Duration::from_millis(100) } else { Duration::from_millis(33) };
+        // Drawing the overlay in software costs as much as tracing a small frame, and no one reads figures faster.
+        let figures = if software { Duration::from_millis(200) } else { Duration::from_millis(33) };
         Self { display: Duration::from_secs_f64(1.0 / rate), figures }
     }
 }

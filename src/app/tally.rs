@@ -53,6 +53,7 @@ mod tests {
             film: Film::new(width, 4, Planes::default()),
             stats: FrameStats { frame_ms: 7.0, ..FrameStats::default() },
             cpu_ms: 13.0,
+            whole_ms: 9.0,
             finished: Instant::now(),
             job: Job { scene: Arc::clone(scene), camera, settings, width, height: 4, lowering, aspect },
             samples: None,

@@ -91,7 +91,8 @@ mod tests {
         let mut film = film_for(&job);
         let stats = render(&job, &mut film);
         let (finished, samples) = (Instant::now(), None);
-        let mut frame = TracedFrame { film, stats, cpu_ms: 0.0, finished, job, samples, beside: None, legend: None };
+        let mut frame =
+            TracedFrame { film, stats, cpu_ms: 0.0, whole_ms: 0.0, finished, job, samples, beside: None, legend: None };
         assert!(views.complete(&mut frame, &film_for, &mut render));
         traced.remove(0);
         (frame, traced)

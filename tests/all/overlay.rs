@@ -96,6 +96,7 @@ impl Panel {
             stats: &self.stats,
             history: &self.history,
             resting: false,
+            refining: false,
             size: (1280, 720),
             showing: self.showing,
             walking: false,

@@ -12,7 +12,7 @@ use super::exam::{Exam, RowCost};
 use super::maps::{Legend, Map};
 use super::survey::of_frames;
 use super::tracer::TracedFrame;
-use crate::render::Film;
+use crate::render::{Film, FrameStats};
 use crate::scene::Camera;
 use crate::settings::Settings;
 
@@ -157,13 +157,14 @@ impl Methods {
         }
     }
 
-    /// An exact picture comes after what was `shown`.
-    pub fn leave(&mut self, shown: Option<Shown>) {
-        self.kept.leave(shown);
+    /// An exact picture comes after what was `shown` and cost `stats`.
+    pub fn leave(&mut self, shown: Option<Shown>, stats: &FrameStats) {
+        self.kept.leave(shown, stats);
     }
 
-    /// What was on display before the exact picture: its film, if it shows what is seen from `camera`, and what it was.
-    pub fn go_back(&mut self, camera: &Camera) -> (Option<Film>, Option<Shown>) {
+    /// What was on display before the exact picture: its film, if it shows what is seen from `camera`, what it was, and what
+    /// it cost.
+    pub fn go_back(&mut self, camera: &Camera) -> (Option<Film>, Option<Shown>, Option<FrameStats>) {
         self.kept.take(camera)
     }
 

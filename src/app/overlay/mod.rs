@@ -53,6 +53,8 @@ pub struct View<'a> {
     pub history: &'a History,
     /// Nothing was traced for a while.
     pub resting: bool,
+    /// The view at rest is being refined.
+    pub refining: bool,
     /// Size of the traced picture in pixels.
     pub size: (u32, u32),
     /// What the picture is.
@@ -265,7 +267,7 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
 /// "62 fps | 14.2 ms | 1280x720", the switch of the panel, and what the picture is.
 fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Change>) {
     ui.horizontal(|ui| {
-        let is_refining = matches!(view.showing, Showing::Refined(samples) if samples < SAMPLES);
+        let is_refining = view.refining || matches!(view.showing, Showing::Refined(samples) if samples < SAMPLES);
         let rate = match view.history.rate() {
             _ if view.resting && (view.tuning.is_measuring() || view.methods.is_measuring()) => "measuring".to_owned(),
             _ if view.resting && is_refining => "refining".to_owned(),

@@ -60,11 +60,11 @@ impl Session {
             Change::Scenes(wish) => self.wish(wish),
             Change::Light(light, dial) => {
                 self.lighting.turn(light, dial);
-                self.lit = self.lighting.lit(&self.scene);
+                self.light(self.lighting.lit(&self.scene));
             }
             Change::ResetLights => {
                 self.lighting.reset();
-                self.lit = self.lighting.lit(&self.scene);
+                self.light(self.lighting.lit(&self.scene));
             }
             Change::CloseInspection => self.inspection = None,
             Change::ToggleHelp => self.shown = self.shown.with_help_toggled(),
@@ -85,11 +85,12 @@ impl Session {
         if let Some(late) = self.fresh.take_if(|frame| frame.job.aspect.is_exact) {
             late.into_films().for_each(|film| self.tracer.recycle(film));
         }
-        let (film, what) = self.methods.go_back(&self.walker.camera());
+        let (film, what, stats) = self.methods.go_back(&self.walker.camera());
         if let Some(exact) = film.and_then(|film| self.presenter.set_frame(&self.gpu, film)) {
             self.tracer.recycle(exact);
         }
         self.traced = what.or(self.traced.take());
+        self.stats = stats.unwrap_or_else(|| std::mem::take(&mut self.stats));
         self.picture.demand(now, self.rates.display);
     }
 

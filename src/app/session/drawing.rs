@@ -75,6 +75,7 @@ impl Session {
             stats: &self.stats,
             history: &self.history,
             resting,
+            refining: self.tracer.is_refining(),
             size: self.traced.as_ref().map_or(picture_size(self.gpu.size()), |(job, _)| (job.width, job.height)),
             showing: self.showing(),
             walking: self.walker.is_walking(),

@@ -221,11 +221,11 @@ impl Session {
 
     /// Takes the newest frame from the tracer, to be shown when it is time, and what a search has come to.
     pub fn fetch_frame(&mut self) {
-        if let Some(survey) = self.tracer.take_survey() {
+        if let Some(survey) = self.tracer.take_survey(&self.lit) {
             self.survey = Some(survey);
             self.figures.demand(Instant::now(), self.rates.figures);
         }
-        if let Some(exam) = self.tracer.take_exam() {
+        if let Some(exam) = self.tracer.take_exam(&self.lit) {
             self.methods.exam = Some(exam);
             self.figures.demand(Instant::now(), self.rates.figures);
         }
@@ -239,10 +239,17 @@ impl Session {
         if let Some(shot) = self.camerawork.frame(&frame.film, &frame.job, frame.samples) {
             self.write(shot);
         }
+        let before = self.traced.replace((frame.job.clone(), frame.samples));
+        if frame.job.aspect.is_exact {
+            self.methods.leave(before, &self.stats);
+        }
         if frame.samples.is_none() {
-            self.history.record(frame.finished, frame.stats.frame_ms);
-            if let Some(fps) = self.settings.target_fps {
-                self.steering.measured(frame.job.lowering.level, frame.stats.frame_ms, 1e3 / f64::from(fps));
+            // What is looked at for a moment is no part of the walk's times.
+            if !frame.job.aspect.is_exact {
+                self.history.record(frame.finished, frame.stats.frame_ms);
+                if let Some(fps) = self.settings.target_fps {
+                    self.steering.measured(frame.job.lowering.level, frame.whole_ms, 1e3 / f64::from(fps));
+                }
             }
             let present = self.stats.stages_ms.present;
             self.stats = frame.stats.clone();
@@ -251,10 +258,6 @@ impl Session {
             if let Some(tally) = &mut self.tally {
                 tally.add(&frame, &self.stats);
             }
-        }
-        let before = self.traced.replace((frame.job.clone(), frame.samples));
-        if frame.job.aspect.is_exact {
-            self.methods.leave(before);
         }
         if let Some(missed) = self.fresh.replace(frame) {
             missed.into_films().for_each(|film| self.tracer.recycle(film));

@@ -58,14 +58,21 @@ impl Session {
     }
 
     pub(super) fn show_scene(&mut self, scene: Arc<Scene>) {
-        self.tracer.stop_search();
-        self.survey = None;
         self.steering = Steering::new(presets_below(&self.settings));
         self.window.set_title(&title(&scene));
         self.inspection = None;
-        self.lit = self.lighting.lit(&scene);
+        self.light(self.lighting.lit(&scene));
         self.walker.lose_footing();
         self.scene = scene;
+    }
+
+    /// Traces `lit` from now on. What was measured of the scene before, or of other lights, says nothing of it.
+    pub(super) fn light(&mut self, lit: Arc<Scene>) {
+        if *lit != *self.lit {
+            self.tracer.stop_search();
+            (self.survey, self.methods.exam) = (None, None);
+        }
+        self.lit = lit;
     }
 
     /// Tells of what the picture shows under the pointer, or in its middle while the pointer is captured.

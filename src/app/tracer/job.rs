@@ -74,6 +74,8 @@ pub struct TracedFrame {
     pub stats: FrameStats,
     /// CPU time of the process while it was traced, in milliseconds.
     pub cpu_ms: f64,
+    /// Wall time of all that was traced for it, other pictures of the view included, in milliseconds.
+    pub whole_ms: f64,
     /// When it was done.
     pub finished: Instant,
     /// What it shows.

@@ -109,14 +109,14 @@ impl Tracer {
         }
     }
 
-    /// The newest news of a search, once.
-    pub fn take_survey(&self) -> Option<Survey> {
-        self.shared.lock().search.survey.take()
+    /// The newest news of a search in `scene`, once; those of another come too late.
+    pub fn take_survey(&self, scene: &Scene) -> Option<Survey> {
+        self.shared.lock().search.survey.take().filter(|(of, _)| **of == *scene).map(|(_, survey)| survey)
     }
 
-    /// The newest news of an exam, once.
-    pub fn take_exam(&self) -> Option<Exam> {
-        self.shared.lock().search.exam.take()
+    /// The newest news of an exam in `scene`, once; those of another come too late.
+    pub fn take_exam(&self, scene: &Scene) -> Option<Exam> {
+        self.shared.lock().search.exam.take().filter(|(of, _)| **of == *scene).map(|(_, exam)| exam)
     }
 
     /// Drops the running frame if newer settings have waited for long enough; else says when to ask again, if ever.
@@ -140,6 +140,11 @@ impl Tracer {
     /// Gives a film back to be traced into again.
     pub fn recycle(&self, film: Film) {
         self.shared.lock().spare.push(film);
+    }
+
+    /// Whether the last view is being refined.
+    pub fn is_refining(&self) -> bool {
+        self.shared.lock().refining
     }
 
     /// Whether a frame is being traced or waits to be, refinement aside.

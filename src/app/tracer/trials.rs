@@ -270,7 +270,7 @@ fn end_of(tracer: &Tracer, words: &Receiver<Word>) -> (End, Vec<u32>) {
     loop {
         assert_eq!(words.recv_timeout(SOON), Ok(Word::Frame));
         widths.extend(tracer.take().map(|frame| frame.film.width()));
-        if let Some(end) = tracer.take_survey().and_then(|survey| survey.end) {
+        if let Some(end) = tracer.take_survey(&nowhere()).and_then(|survey| survey.end) {
             return (end, widths);
         }
     }
@@ -314,4 +314,17 @@ fn a_search_is_stopped_in_the_middle_of_a_frame() {
     assert_eq!(begins.recv_timeout(SOON), Ok(16));
     tracer.stop_search();
     assert_eq!(end_of(&tracer, &words).0, End::Stopped);
+}
+
+#[test]
+fn news_of_another_scene_are_no_news() {
+    let render = |_: &Job, _: &mut Film| FrameStats { completed: true, ..FrameStats::default() };
+    let (tracer, words) = start(render, CancelToken::default());
+    let (scene, task, survey) = search();
+    tracer.search(scene, task, survey);
+    let other = builtin(&LoadOptions::default()).expect("it loads");
+    assert_eq!(words.recv_timeout(SOON), Ok(Word::Frame));
+    assert_eq!(tracer.take_survey(&other), None);
+    assert_eq!(words.recv_timeout(SOON), Ok(Word::Frame));
+    assert!(tracer.take_survey(&nowhere()).is_some());
 }

@@ -81,11 +81,14 @@ impl Worker {
     /// Traces a frame and puts it into the box; false for one that was dropped on the way.
     pub fn trace(&self, job: Job, render: Render<'_>, views: &mut Views) -> bool {
         let mut film = self.film_for(&job);
-        let cpu = ProcessTime::now();
+        let (began, cpu) = (Instant::now(), ProcessTime::now());
         let stats = render(&job, &mut film);
         let (cpu_ms, finished, completed) = (1e3 * cpu.elapsed().as_secs_f64(), Instant::now(), stats.completed);
-        let mut frame = TracedFrame { film, stats, cpu_ms, finished, job, samples: None, beside: None, legend: None };
+        let (whole_ms, samples) = (stats.frame_ms, None);
+        let mut frame =
+            TracedFrame { film, stats, cpu_ms, whole_ms, finished, job, samples, beside: None, legend: None };
         let completed = completed && views.complete(&mut frame, &|job| self.film_for(job), render);
+        frame.whole_ms = 1e3 * began.elapsed().as_secs_f64();
         let mut exchange = self.shared.lock();
         exchange.running = None;
         if !completed {
@@ -112,8 +115,9 @@ impl Worker {
         let mut film = self.film_for(job);
         film.copy_rgba(refined);
         let (finished, job) = (Instant::now(), job.clone());
-        // Of one pass of many, the time says nothing.
-        let frame = TracedFrame { film, stats, cpu_ms: 0.0, finished, job, samples, beside: None, legend: None };
+        // Of one pass of many, times say nothing.
+        let (cpu_ms, whole_ms) = (0.0, 0.0);
+        let frame = TracedFrame { film, stats, cpu_ms, whole_ms, finished, job, samples, beside: None, legend: None };
         self.shared.lock().put(frame);
         true
     }
