@@ -267,7 +267,8 @@ mod tests {
                 let mut expected = frame.as_ref().map_or([0; 4], |film| {
                     let place = |at: usize, from: u32, to: u32| at * from as usize / to as usize;
                     let (column, row) = (place(x, film.width(), width), place(y, film.height(), height));
-                    swapped(film.rgba().as_chunks().0[row * film.width() as usize + column])
+                    let [r, g, b, _] = film.rgba().as_chunks().0[row * film.width() as usize + column];
+                    swapped([r, g, b, 255])
                 });
                 if direct.overlay.size() == size {
                     expected = over(swapped(direct.overlay.row(y as u32)[x].to_array()), expected);

@@ -323,8 +323,10 @@ fn news_of_another_scene_are_no_news() {
     let (scene, task, survey) = search();
     tracer.search(scene, task, survey);
     let other = builtin(&LoadOptions::default()).expect("it loads");
-    assert_eq!(words.recv_timeout(SOON), Ok(Word::Frame));
-    assert_eq!(tracer.take_survey(&other), None);
-    assert_eq!(words.recv_timeout(SOON), Ok(Word::Frame));
-    assert!(tracer.take_survey(&nowhere()).is_some());
+    let mut word = words.recv_timeout(SOON);
+    assert_eq!(word, Ok(Word::Frame));
+    while word.is_ok() {
+        assert_eq!(tracer.take_survey(&other), None);
+        word = words.recv_timeout(Duration::from_millis(300));
+    }
 }
