@@ -1,12 +1,14 @@
 //! Numbered views to come back to.
 
+use super::config::reading::Faults;
 use crate::scene::Camera;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The bookmarks of scenes by their files; those of the built-in scene have no name.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct BookmarkShelf(BTreeMap<String, Bookmarks>);
 
@@ -20,6 +22,34 @@ impl BookmarkShelf {
     pub fn of_mut(&mut self, file: Option<&Path>) -> &mut Bookmarks {
         self.0.entry(name(file)).or_default()
     }
+
+    /// Out of a configuration: whatever of it are bookmarks.
+    pub fn read(value: Value, faults: &mut Faults) -> Self {
+        let scenes = match value {
+            Value::Object(scenes) => scenes,
+            Value::Null => Map::new(),
+            _ => {
+                faults.note("bookmarks");
+                Map::new()
+            }
+        };
+        let read = |(name, value): (String, Value)| {
+            let bookmarks = Bookmarks::read(&name, value, faults);
+            (name, bookmarks)
+        };
+        Self(scenes.into_iter().map(read).collect())
+    }
+
+    /// Takes over the views that changed from `before` to `after`.
+    pub fn take_changes(&mut self, before: &Self, after: &Self) {
+        let none = Bookmarks::default();
+        for (name, after) in &after.0 {
+            let before = before.0.get(name).unwrap_or(&none);
+            if before != after {
+                self.0.entry(name.clone()).or_default().take_changes(before, after);
+            }
+        }
+    }
 }
 
 fn name(file: Option<&Path>) -> String {
@@ -28,7 +58,7 @@ fn name(file: Option<&Path>) -> String {
 }
 
 /// Views by number, 1 to 9.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Bookmarks([Option<Camera>; 9]);
 
 impl Bookmarks {
@@ -42,6 +72,34 @@ impl Bookmarks {
     /// The view of a number, if one was kept.
     pub fn get(&self, number: u8) -> Option<Camera> {
         *self.0.get(usize::from(number.wrapping_sub(1)))?
+    }
+
+    /// The bookmarks of the scene of a name: a list of views, `null` where there is none.
+    fn read(name: &str, value: Value, faults: &mut Faults) -> Self {
+        let mut bookmarks = Self::default();
+        let Value::Array(views) = value else {
+            faults.note(format_args!("bookmarks of \"{name}\""));
+            return bookmarks;
+        };
+        if views.len() > bookmarks.0.len() {
+            faults.note(format_args!("more than {} bookmarks of \"{name}\"", bookmarks.0.len()));
+        }
+        let places = bookmarks.0.iter_mut().zip(views).enumerate();
+        for (i, (place, view)) in places.filter(|(_, (_, view))| !view.is_null()) {
+            match serde_json::from_value(view) {
+                Ok(view) => *place = Some(view),
+                Err(_) => faults.note(format_args!("bookmark {} of \"{name}\"", i + 1)),
+            }
+        }
+        bookmarks
+    }
+
+    fn take_changes(&mut self, before: &Self, after: &Self) {
+        for (place, (before, after)) in self.0.iter_mut().zip(before.0.iter().zip(&after.0)) {
+            if before != after {
+                *place = *after;
+            }
+        }
     }
 }
 
@@ -58,7 +116,8 @@ mod tests {
         assert_eq!(shelf.of(Some(Path::new("/hall.json"))).get(1), None);
         assert_eq!(shelf.of(None).get(1), None);
         let text = serde_json::to_string(&shelf).expect("plain data");
-        assert_eq!(serde_json::from_str::<BookmarkShelf>(&text).expect("what was written"), shelf);
+        let value = serde_json::from_str(&text).expect("what was written");
+        assert_eq!(BookmarkShelf::read(value, &mut Faults::default()), shelf);
     }
 
     #[test]
@@ -69,7 +128,7 @@ mod tests {
         bookmarks.store(0, camera);
         bookmarks.store(10, camera);
         let text = serde_json::to_string(&bookmarks).expect("plain data");
-        let read: Bookmarks = serde_json::from_str(&text).expect("what was written");
+        let read = Bookmarks::read("", serde_json::from_str(&text).expect("what was written"), &mut Faults::default());
         assert_eq!(read, bookmarks);
         assert_eq!(read.get(3), Some(camera));
         assert!([0, 1, 9, 10, 255].iter().all(|&number| read.get(number).is_none()));

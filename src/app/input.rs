@@ -208,7 +208,8 @@ impl Keys {
         let PhysicalKey::Code(code) = key else { return None };
         let command =
             COMMAND_KEYS.iter().find(|&&(c, ctrl, _)| c == code && ctrl == self.ctrl).map(|&(_, _, command)| command);
-        if command.is_none() && !self.ctrl && HOLD_KEYS.iter().any(|&(c, _)| c == code) {
+        // The repeats of a chord go on after Ctrl was let go, and are no step.
+        if command.is_none() && !self.ctrl && !repeat && HOLD_KEYS.iter().any(|&(c, _)| c == code) {
             self.down.insert(code);
         }
         command.filter(|_| !repeat)
@@ -303,6 +304,9 @@ mod tests {
         assert_eq!(keys.press(code(KeyCode::KeyQ), false), Some(Command::Quit));
         keys.press(code(KeyCode::KeyC), false);
         assert!(!keys.motion().is_moving(), "Ctrl+C is no step down");
+        keys.set_ctrl(false);
+        keys.press(code(KeyCode::KeyC), true);
+        assert!(!keys.motion().is_moving(), "nor is the C that is still down once Ctrl is not");
     }
 
     #[test]

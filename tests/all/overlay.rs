@@ -228,6 +228,50 @@ fn the_help_fits_in_small_windows() {
 }
 
 #[test]
+fn the_keys_can_be_read_in_narrow_windows_and_at_every_size_of_the_text() {
+    for (size, scale) in [((640.0, 420.0), 1.0), ((640.0, 420.0), 2.0), ((640.0, 420.0), 3.0), ((320.0, 400.0), 1.0)] {
+        let mut panel = Panel::new();
+        (panel.shown.panel, panel.shown.help) = (false, true);
+        let size = egui::Vec2::from(size) / scale;
+        let mut harness = Harness::builder()
+            .with_size(size)
+            .with_pixels_per_point(scale)
+            .with_context_setup(theme::apply)
+            .build_ui_state(|ui, panel: &mut Panel| panel.show(ui), panel);
+        harness.run();
+        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, size);
+        let (keys, what) = HELP[0];
+        for label in [keys, what, "Close window"] {
+            let place = harness.get_all_by_label(label).next_back().expect("it is there").rect();
+            assert!(window.contains_rect(place), "{label}: {place:?} in {size}");
+        }
+        for (keys, what) in HELP {
+            for label in [keys, what] {
+                // Further ones are below: they are scrolled to.
+                let place = harness.get_all_by_label(label).next_back().expect("it is there").rect();
+                assert!(place.left() >= 0.0 && place.right() <= size.x, "{label}: {place:?} in {size}");
+            }
+        }
+    }
+}
+
+#[test]
+fn notices_are_whole_however_many_there_are() {
+    let mut harness = Panel::new().harness();
+    let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(800.0, 1400.0));
+    let mut lowest = f32::NAN;
+    for text in ["There is no bookmark 5", "There is no bookmark 6, and that takes more words than the first"] {
+        harness.state_mut().notices.warn(Instant::now(), text);
+        // One drawing, after which nothing else happens.
+        harness.step();
+        let place = harness.get_by_label(text).rect();
+        assert!(window.contains_rect(place) && (place.center().x - 400.0).abs() < 300.0, "{text}: {place:?}");
+        assert!(lowest.is_nan() || (place.bottom() - lowest).abs() < 1.0, "{text}: {place:?}, the first at {lowest}");
+        lowest = place.bottom();
+    }
+}
+
+#[test]
 fn panel_and_text_can_be_made_larger() {
     let mut harness = Panel::new().harness();
     let slider = harness.get_all_by_label("panel size").next_back().expect("a slider");

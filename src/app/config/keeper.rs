@@ -3,8 +3,8 @@
 use super::{Config, Store, WindowState};
 use crate::app::errands::{Errand, News};
 use crate::settings::Settings;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// From a change to the file: a slider that is dragged is one change.
@@ -18,9 +18,12 @@ pub struct Keeper {
     /// What will be written. To be brought up to date before [`save`](Self::save).
     pub config: Config,
     store: Option<Store>,
-    /// As it was read, and as it was last written.
+    /// As it was read, and as it was last to be written.
     read: Config,
-    written: Config,
+    asked: Config,
+    /// As it was when the file last had all of it: what changed since is laid over whatever another window wrote. Only
+    /// errands look at it, one after the other.
+    filed: Arc<Mutex<Config>>,
     /// The settings and the window as they were opened.
     settings: Settings,
     window: Option<WindowState>,
@@ -36,7 +39,8 @@ impl Keeper {
         Self {
             store,
             read: config.clone(),
-            written: config.clone(),
+            asked: config.clone(),
+            filed: Arc::new(Mutex::new(config.clone())),
             config,
             settings: settings.clone(),
             window: None,
@@ -95,12 +99,19 @@ impl Keeper {
     /// What writes the file, if there is anything new to write.
     pub fn save(&mut self) -> Option<Errand> {
         self.due = None;
-        let store = self.store.as_ref().filter(|_| self.config != self.written)?.clone();
-        self.written = self.config.clone();
-        let text = serde_json::to_string_pretty(&self.config).ok()?;
-        let told = Arc::clone(&self.told);
+        let store = self.store.as_ref().filter(|_| self.config != self.asked)?.clone();
+        self.asked = self.config.clone();
+        let (after, filed, told) = (self.config.clone(), Arc::clone(&self.filed), Arc::clone(&self.told));
         Some(Box::new(move || {
-            let error = store.write(&(text + "\n")).err()?;
+            let mut before = filed.lock().unwrap_or_else(PoisonError::into_inner);
+            let written = store.update(|current| match current {
+                Some(current) => current.with_changes(&before, &after),
+                None => after.clone(),
+            });
+            let Err(error) = written else {
+                *before = after;
+                return None;
+            };
             let is_first = !told.swap(true, Ordering::Relaxed);
             is_first.then(|| News::Problem(format!("settings are not kept: {error}")))
         }))
@@ -110,6 +121,8 @@ impl Keeper {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::temporary::Folder;
+    use crate::scene::Camera;
 
     fn keeper() -> Keeper {
         let store = Store::open(std::env::temp_dir().join("raywalk-never-written/config.json")).0;
@@ -129,6 +142,49 @@ mod tests {
         assert!(keeper.save().is_some());
         assert_eq!(keeper.due(), None);
         assert!(keeper.save().is_none(), "it is written");
+    }
+
+    #[test]
+    fn two_windows_keep_what_each_of_them_changed() {
+        let folder = Folder::new();
+        let path = folder.0.join("config.json");
+        let open = || {
+            let (store, config, _) = Store::open(path.clone());
+            Keeper::new(Some(store), config, &Settings::balanced())
+        };
+        let save = |keeper: &mut Keeper| {
+            assert!(keeper.save().is_some_and(|errand| errand().is_none()));
+            Store::open(path.clone()).1
+        };
+        let (mut one, mut other) = (open(), open());
+        one.config.bookmarks.of_mut(None).store(1, Camera::default());
+        save(&mut one);
+        other.config.bookmarks.of_mut(None).store(2, Camera::default());
+        other.config.ui_scale = 2.0;
+        save(&mut other);
+        one.config.panel = false;
+        let kept = save(&mut one);
+        assert!([1, 2].iter().all(|&number| kept.bookmarks.of(None).get(number).is_some()), "{kept:?}");
+        assert_eq!((kept.ui_scale, kept.panel), (2.0, false));
+        assert_eq!(folder.names(), ["config.json"]);
+    }
+
+    #[test]
+    fn what_could_not_be_written_is_written_with_the_next_change() {
+        let folder = Folder::new();
+        let path = folder.0.join("raywalk/config.json");
+        let (store, config, _) = Store::open(path.clone());
+        let mut keeper = Keeper::new(Some(store), config, &Settings::balanced());
+        let in_the_way = folder.write("raywalk", b"");
+        keeper.config.panel = false;
+        assert!(keeper.save().is_some_and(|errand| errand().is_some()));
+        std::fs::remove_file(in_the_way).expect("it is there");
+        // Another window came first.
+        Store::open(path.clone()).0.update(|_| Config { ui_scale: 2.0, ..Config::default() }).expect("writable");
+        keeper.config.invert_look = true;
+        assert!(keeper.save().is_some_and(|errand| errand().is_none()));
+        let kept = Store::open(path).1;
+        assert_eq!((kept.panel, kept.invert_look, kept.ui_scale), (false, true, 2.0));
     }
 
     #[test]

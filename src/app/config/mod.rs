@@ -1,10 +1,13 @@
 //! What the window remembers from one run to the next: a small JSON file in the user's configuration folder.
 //!
 //! [`Config`] is the file as plain data; to remember something more, add a field with a default, and fill it in where
-//! the session gathers what it keeps. [`Store`] reads and writes the file, [`Keeper`] knows when.
+//! the session gathers what it keeps. [`reading`] makes one of the file's text, [`changes`] knows what one window changed
+//! of it, [`Store`] reads and writes the file, [`Keeper`] knows when.
 //! Flags beat it, the contract's order of settings before it stays, and nothing but the window looks at it.
 
+mod changes;
 mod keeper;
+pub mod reading;
 mod store;
 
 pub use keeper::Keeper;
@@ -14,16 +17,18 @@ use crate::app::bookmarks::BookmarkShelf;
 use crate::app::scenes::RecentFiles;
 use crate::math::simd;
 use crate::settings::{ROWS, Row, Settings};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
+/// Most pixels of a window along a side and in all (two of 8K): systems and adapters give out beyond.
+const MAX_SIDE: u32 = 16384;
+const MAX_AREA: u64 = 1 << 26;
 /// Sizes of panel and text, against the usual one.
 pub const UI_SCALES: RangeInclusive<f32> = 0.5..=3.0;
 
 /// The file, as plain data. What it lacks has its default; keys of a later version are kept as they are.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Config {
     /// Settings that differ from those the window usually starts with: values as they are typed, by the names of rows.
     pub settings: BTreeMap<String, String>,
@@ -49,8 +54,7 @@ pub struct Config {
 }
 
 /// A window on the desktop, in physical pixels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct WindowState {
     /// Left and upper edge of its frame, where the desktop tells.
     pub position: Option<(i32, i32)>,
@@ -60,6 +64,24 @@ pub struct WindowState {
     pub maximized: bool,
     /// It fills the screen.
     pub fullscreen: bool,
+}
+
+impl WindowState {
+    /// Whether a window can be of this size.
+    pub fn can_be((width, height): (u32, u32)) -> bool {
+        width.min(height) > 0 && width.max(height) <= MAX_SIDE && u64::from(width) * u64::from(height) <= MAX_AREA
+    }
+
+    /// The size of a window for a picture of this size: the same, or of about the same shape where no window can be that
+    /// large.
+    pub fn nearest_size((width, height): (u32, u32)) -> (u32, u32) {
+        let (across, down) = (f64::from(width.max(1)), f64::from(height.max(1)));
+        let side = f64::from(MAX_SIDE) / across.max(down);
+        let scale = side.min((MAX_AREA as f64 / (across * down)).sqrt()).min(1.0);
+        // Rounded down: the product is not above the area.
+        let scaled = |side: f64| ((side * scale) as u32).max(1);
+        (scaled(across), scaled(down))
+    }
 }
 
 impl Default for Config {
@@ -121,14 +143,6 @@ impl Config {
             }
         }
     }
-
-    /// The same with every number in its range: files are written by hand, too.
-    fn within_ranges(self) -> Self {
-        let ui_scale = self.ui_scale.clamp(*UI_SCALES.start(), *UI_SCALES.end());
-        let sensitivity = self.sensitivity.filter(|degrees| (1e-3..=10.0).contains(degrees));
-        let window = self.window.filter(|window| window.size.0 > 0 && window.size.1 > 0);
-        Self { ui_scale, sensitivity, window, ..self }
-    }
 }
 
 #[cfg(test)]
@@ -136,22 +150,36 @@ mod tests {
     use super::*;
     use crate::settings::{Exposure, Fill};
 
+    fn read(text: &str) -> Config {
+        Config::read(text, &mut reading::Faults::default()).expect("an object")
+    }
+
     #[test]
     fn a_config_survives_the_round_trip_through_its_file() {
         let mut config = Config { ui_scale: 1.5, sensitivity: Some(0.2), invert_look: true, ..Config::default() };
         config.window = Some(WindowState { position: Some((-5, 40)), size: (900, 500), ..WindowState::default() });
         config.settings.insert("fill".to_owned(), "hit".to_owned());
         let text = serde_json::to_string_pretty(&config).expect("plain data");
-        assert_eq!(serde_json::from_str::<Config>(&text).expect("its own text"), config);
+        assert_eq!(read(&text), config);
     }
 
     #[test]
     fn missing_keys_have_defaults_and_unknown_ones_are_kept() {
-        assert_eq!(serde_json::from_str::<Config>("{}").expect("an object"), Config::default());
-        let config: Config = serde_json::from_str(r#"{ "panel": false, "later": [1, 2] }"#).expect("an object");
+        assert_eq!(read("{}"), Config::default());
+        let config = read(r#"{ "panel": false, "later": [1, 2] }"#);
         assert!(!config.panel && config.others.contains_key("later"));
         let text = serde_json::to_string(&config).expect("plain data");
         assert!(text.contains(r#""later":[1,2]"#), "{text}");
+    }
+
+    #[test]
+    fn a_window_for_a_huge_picture_is_one_that_can_be() {
+        assert_eq!(WindowState::nearest_size((1280, 720)), (1280, 720));
+        for size in [(u32::MAX, u32::MAX), (u32::MAX, 1), (1, u32::MAX), (40000, 20000), (16384, 16384), (0, 5)] {
+            let nearest = WindowState::nearest_size(size);
+            assert!(WindowState::can_be(nearest), "{nearest:?} for {size:?}");
+        }
+        assert_eq!(WindowState::nearest_size((40000, 20000)), (11585, 5792));
     }
 
     #[test]
@@ -175,10 +203,7 @@ mod tests {
 
     #[test]
     fn nonsense_is_passed_over() {
-        let text = r#"{ "settings": { "stride": "7", "colour": "red", "bvh": "off" }, "ui_scale": 1e9,
-            "sensitivity": -3, "window": { "size": [0, 4] } }"#;
-        let config = serde_json::from_str::<Config>(text).expect("right types").within_ranges();
+        let config = read(r#"{ "settings": { "stride": "7", "colour": "red", "bvh": "off" } }"#);
         assert_eq!(config.start_settings(), Settings { bvh: false, ..usual_settings() });
-        assert_eq!((config.ui_scale, config.sensitivity, config.window), (3.0, None, None));
     }
 }

@@ -12,7 +12,8 @@ use egui::{Align2, CollapsingHeader, RichText, ScrollArea, Ui, Window};
 const WIDTH: f32 = 560.0;
 /// Most of the window's height that the help takes.
 const SHARE: f32 = 0.86;
-
+/// With less room than this, in points, keys stand above what they do and not beside it.
+const TWO_COLUMNS: f32 = 300.0;
 /// In windows with less room than this, in points, there is nothing to read in.
 const LEAST_ROOM: egui::Vec2 = egui::vec2(200.0, 140.0);
 
@@ -90,11 +91,15 @@ pub fn show(ui: &Ui, labels: &Labels, changes: &mut Vec<Change>) {
             ui.set_width(WIDTH.min(room.x - 48.0).max(1.0));
             // Without the height of the title and the frame.
             let height = (SHARE * room.y - 56.0).max(1.0);
-            ScrollArea::vertical()
-                .max_height(height)
-                .min_scrolled_height(height)
-                .auto_shrink([false, true])
-                .show(ui, |ui| contents(ui, labels));
+            // Both ways: whatever does not wrap would make the window wider than there is room, and put its left edge
+            // out of sight.
+            ScrollArea::both().max_height(height).min_scrolled_height(height).auto_shrink([false, true]).show(
+                ui,
+                |ui| {
+                    ui.set_max_width(ui.available_width());
+                    contents(ui, labels);
+                },
+            );
         });
     if !open {
         changes.push(Change::ToggleHelp);
@@ -123,6 +128,10 @@ fn section(ui: &mut Ui, title: &'static str, add_contents: impl FnOnce(&mut Ui))
 
 /// Keys and what they do: in the help and in the panel.
 pub fn keys(ui: &mut Ui, labels: &Labels) {
+    if ui.available_width() < TWO_COLUMNS {
+        HELP.iter().for_each(|(keys, what)| entry(ui, &labels.of(keys), what));
+        return;
+    }
     egui::Grid::new("keys").num_columns(2).spacing([16.0, 3.0]).show(ui, |ui| {
         for (keys, what) in HELP {
             ui.label(RichText::new(labels.of(keys)).color(theme::STRONG));

@@ -14,6 +14,7 @@ mod legend;
 mod lights;
 mod methods;
 pub mod notice;
+mod placing;
 mod scenes;
 pub mod theme;
 mod tuning;

@@ -1,6 +1,6 @@
 //! Notices: one line each on what was just done or went wrong, gone after some seconds.
 
-use super::theme;
+use super::{placing, theme};
 use egui::{Align2, Area, Color32, Frame, Label, RichText, Ui};
 use std::time::{Duration, Instant};
 
@@ -84,17 +84,15 @@ pub fn show(ui: &Ui, notices: &[Notice]) {
         return;
     }
     let width = WIDTH.min(ui.ctx().content_rect().width() - 2.0 * MARGIN).max(1.0);
-    Area::new(egui::Id::unique("notices"))
-        .anchor(Align2::CENTER_BOTTOM, [0.0, -MARGIN])
-        .order(egui::Order::Foreground)
-        .interactable(false)
-        .show(ui.ctx(), |ui| {
-            ui.set_max_width(width);
-            for notice in notices {
-                let frame = Frame::new().fill(theme::BACKGROUND).inner_margin(8.0).corner_radius(5.0);
-                frame.show(ui, |ui| ui.add(Label::new(RichText::new(&notice.text).color(color(notice.tone))).wrap()));
-            }
-        });
+    let id = egui::Id::unique("notices");
+    let area = Area::new(id).anchor(Align2::CENTER_BOTTOM, [0.0, -MARGIN]).order(egui::Order::Foreground);
+    placing::show(ui.ctx(), id, area.interactable(false), |ui| {
+        ui.set_max_width(width);
+        for notice in notices {
+            let frame = Frame::new().fill(theme::BACKGROUND).inner_margin(8.0).corner_radius(5.0);
+            frame.show(ui, |ui| ui.add(Label::new(RichText::new(&notice.text).color(color(notice.tone))).wrap()));
+        }
+    });
 }
 
 fn color(tone: Tone) -> Color32 {

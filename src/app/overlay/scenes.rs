@@ -1,6 +1,6 @@
 //! Scenes in words: the one shown, how far the next has come, and what was wrong or odd.
 
-use super::{Change, View, theme};
+use super::{Change, View, placing, theme};
 use crate::app::scenes::{Failure, Loading, Report, Wish};
 use crate::scene::Scene;
 use egui::{Align2, Color32, ProgressBar, RichText, ScrollArea, Ui};
@@ -24,26 +24,25 @@ pub fn boxes(ui: &Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     }
     let available = ui.ctx().content_rect();
     let width = WIDTH.min(available.width() - 2.0 * MARGIN).max(1.0);
-    egui::Area::new(egui::Id::unique("scenes"))
-        .anchor(Align2::CENTER_BOTTOM, egui::vec2(0.0, -ABOVE_NOTICES))
-        .constrain(true)
-        .show(ui.ctx(), |ui| {
-            ui.set_width(width);
-            if let Some(scene) = odd {
-                in_box(ui, theme::WARNING, |ui| warnings_box(ui, scene, changes));
-            }
-            if let Some(failure) = failure {
-                in_box(ui, theme::FAILURE, |ui| failure_box(ui, failure, changes));
-            }
-            if let Some(loading) = loading {
-                in_box(ui, theme::ACCENT, |ui| loading_box(ui, loading, changes));
-            }
-            if let Some(hint) = hint {
-                in_box(ui, theme::ACCENT, |ui| {
-                    ui.label(RichText::new(*hint).color(theme::STRONG));
-                });
-            }
-        });
+    let id = egui::Id::unique("scenes");
+    let area = egui::Area::new(id).anchor(Align2::CENTER_BOTTOM, egui::vec2(0.0, -ABOVE_NOTICES)).constrain(true);
+    placing::show(ui.ctx(), id, area, |ui| {
+        ui.set_width(width);
+        if let Some(scene) = odd {
+            in_box(ui, theme::WARNING, |ui| warnings_box(ui, scene, changes));
+        }
+        if let Some(failure) = failure {
+            in_box(ui, theme::FAILURE, |ui| failure_box(ui, failure, changes));
+        }
+        if let Some(loading) = loading {
+            in_box(ui, theme::ACCENT, |ui| loading_box(ui, loading, changes));
+        }
+        if let Some(hint) = hint {
+            in_box(ui, theme::ACCENT, |ui| {
+                ui.label(RichText::new(*hint).color(theme::STRONG));
+            });
+        }
+    });
 }
 
 fn in_box(ui: &mut Ui, edge: Color32, add_contents: impl FnOnce(&mut Ui)) {

@@ -1,13 +1,15 @@
 //! The files that were opened last.
 
-use serde::{Deserialize, Serialize};
+use crate::app::config::reading::Faults;
+use serde::Serialize;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// How many are kept.
 const MOST: usize = 10;
 
 /// The files that were opened last, the newest first.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
 pub struct RecentFiles {
     files: Vec<PathBuf>,
@@ -27,6 +29,44 @@ impl RecentFiles {
     /// Strikes a file out.
     pub fn forget(&mut self, file: &Path) {
         self.files.retain(|known| known != file);
+    }
+
+    /// Out of a configuration: whatever of a list are names of files.
+    pub fn read(value: Value, faults: &mut Faults) -> Self {
+        let entries = match value {
+            Value::Array(entries) => entries,
+            Value::Null => Vec::new(),
+            _ => {
+                faults.note("recent");
+                Vec::new()
+            }
+        };
+        let file = |(i, entry): (usize, Value)| match entry {
+            Value::String(file) => Some(PathBuf::from(file)),
+            _ => {
+                faults.note(format_args!("recent[{i}]"));
+                None
+            }
+        };
+        let mut files: Vec<PathBuf> = entries.into_iter().enumerate().filter_map(file).collect();
+        files.truncate(MOST);
+        Self { files }
+    }
+
+    /// Takes over what was opened and struck out from `before` to `after`.
+    pub fn take_changes(&mut self, before: &Self, after: &Self) {
+        let (before, after) = (&before.files, &after.files);
+        // A full list lost its last ones to new ones: nobody struck them out.
+        if after.len() < MOST {
+            before.iter().filter(|file| !after.contains(file)).for_each(|file| self.forget(file));
+        }
+        // What was opened stands before all that is still in its old order.
+        let is_as_before = |rest: &[PathBuf]| {
+            let mut known = before.iter();
+            rest.iter().all(|file| known.any(|other| other == file))
+        };
+        let opened = (0..after.len()).find(|&count| is_as_before(&after[count..])).unwrap_or(after.len());
+        after[..opened].iter().rev().for_each(|file| self.opened(file));
     }
 
     /// The files, the newest first.
@@ -61,6 +101,24 @@ mod tests {
         recent.opened(Path::new("/scenes/my room.json"));
         let text = serde_json::to_string(&recent).expect("it is text");
         assert_eq!(text, r#"["/scenes/my room.json"]"#);
-        assert_eq!(serde_json::from_str::<RecentFiles>(&text).expect("it was written"), recent);
+        let value = serde_json::from_str(&text).expect("it was written");
+        assert_eq!(RecentFiles::read(value, &mut Faults::default()), recent);
+    }
+
+    #[test]
+    fn another_windows_list_takes_over_what_was_opened_and_struck_out() {
+        let list = |names: &[&str]| RecentFiles { files: names.iter().map(PathBuf::from).collect() };
+        let before = list(&["/a", "/b", "/c"]);
+        for (after, theirs, expected) in [
+            (&["/a", "/b", "/c"][..], &["/x", "/a"][..], &["/x", "/a"][..]),
+            (&["/n", "/a", "/b", "/c"], &["/x", "/a", "/b", "/c"], &["/n", "/x", "/a", "/b", "/c"]),
+            (&["/c", "/a", "/b"], &["/x", "/a", "/b", "/c"], &["/c", "/x", "/a", "/b"]),
+            (&["/a", "/c"], &["/x", "/a", "/b", "/c"], &["/x", "/a", "/c"]),
+            (&[], &["/x", "/b"], &["/x"]),
+        ] {
+            let mut merged = list(theirs);
+            merged.take_changes(&before, &list(after));
+            assert_eq!(merged, list(expected), "{after:?} over {theirs:?}");
+        }
     }
 }

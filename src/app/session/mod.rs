@@ -135,7 +135,7 @@ impl Session {
             }
         };
         let attributes = Window::default_attributes().with_title(title(&scene));
-        let size = WindowState { size: options.size, ..WindowState::default() };
+        let size = WindowState { size: WindowState::nearest_size(options.size), ..WindowState::default() };
         let place = options.config.window.filter(|_| options.as_before).unwrap_or(size);
         let attributes = desktop::placed(attributes, place, event_loop);
         let window = event_loop.create_window(attributes).map_err(|error| AppError::NoDisplay(error.to_string()))?;

@@ -3,6 +3,7 @@
 use super::events::WindowHost;
 use super::{Session, title};
 use crate::app::capture::PointerHost;
+use crate::app::config::WindowState;
 use crate::app::error::AppError;
 use crate::app::inspection;
 use crate::app::lighting::Lighting;
@@ -38,7 +39,8 @@ impl Session {
         self.load_ms = load_ms;
         self.walker.enter(&scene, camera);
         self.lighting = Lighting::of(&scene);
-        if let Some((width, height)) = size.filter(|_| !self.is_placed) {
+        if let Some(size) = size.filter(|_| !self.is_placed) {
+            let (width, height) = WindowState::nearest_size(size);
             // The window stays as it is where the system does not let it be resized.
             let _ = self.window.request_inner_size(PhysicalSize::new(width, height));
         }

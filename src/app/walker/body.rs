@@ -28,9 +28,10 @@ const PIECES: u32 = 16;
 const PUSHES: u32 = 12;
 /// Surfaces less steep than this are stood on or hung against: their normal's share along up.
 const LEVEL: f64 = 0.7;
-/// Places around the middle under which a floor is looked for, and their distance from it in radii.
-const SOLES: u32 = 8;
+/// How far from the middle a floor is looked for, in radii.
 const SOLE: f64 = 0.6;
+/// Places on a ring around a middle.
+const SIDES: u32 = 8;
 
 /// The surroundings, and which way is up there.
 #[derive(Clone, Copy)]
@@ -52,6 +53,15 @@ impl World<'_> {
     pub fn distance(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
         let met = Probe::new(self.geometry).look_along(origin.as_vec3(), direction.as_vec3(), 0.0);
         met.map(|met| f64::from(met.distance))
+    }
+
+    /// Ways from a middle to places all around it, level and this long.
+    pub fn ring(&self, distance: f64) -> impl Iterator<Item = DVec3> + use<> {
+        let (right, ahead) = self.up.any_orthonormal_pair();
+        (0..SIDES).map(move |i| {
+            let angle = TAU * f64::from(i) / f64::from(SIDES);
+            (right * angle.cos() + ahead * angle.sin()) * distance
+        })
     }
 }
 
@@ -136,12 +146,7 @@ impl Body {
     pub fn floor(self, world: World, feet: DVec3, deepest: f64) -> Option<f64> {
         let knee = self.step() + self.radius();
         let mut probe = Probe::new(world.geometry);
-        let (right, ahead) = world.up.any_orthonormal_pair();
-        let around = (0..SOLES).map(|i| {
-            let angle = TAU * f64::from(i) / f64::from(SOLES);
-            (right * angle.cos() + ahead * angle.sin()) * (SOLE * self.radius())
-        });
-        let soles = around.chain([DVec3::ZERO]);
+        let soles = world.ring(SOLE * self.radius()).chain([DVec3::ZERO]);
         let below = soles.filter_map(|sole| {
             let origin = feet + world.up * knee + sole;
             let met = probe.look_along(origin.as_vec3(), (-world.up).as_vec3(), 0.0)?;

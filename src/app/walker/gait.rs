@@ -2,7 +2,6 @@
 
 use super::body::{Body, World};
 use glam::DVec3;
-use std::f64::consts::TAU;
 
 /// Length of a step of time, in seconds.
 const TICK: f64 = 1.0 / 240.0;
@@ -22,9 +21,8 @@ const EASE: f64 = 0.05;
 const DEEPEST: f64 = 200.0;
 /// Whoever moves less than this share of the eye height in a step stands still.
 const STILL: f64 = 1e-6;
-/// Distances in radii at which a place is looked for where the body fits, and directions.
+/// Distances in radii at which a place is looked for where the body fits.
 const ASIDE: [f64; 3] = [1.0, 2.0, 4.0];
-const SIDES: u32 = 8;
 /// How far the knees bend at once where the ceiling is low, in steps.
 const BENDS: [f64; 4] = [0.0, 0.3, 0.6, 0.9];
 
@@ -51,14 +49,8 @@ pub struct Gait {
 impl Gait {
     /// Stands or begins to fall at `eye`, or as near to it as there is room in sight of it. `None` where there is none.
     pub fn begin(body: Body, world: World, eye: DVec3) -> Option<Self> {
-        let ring = |radii: f64| {
-            let (right, ahead) = world.up.any_orthonormal_pair();
-            (0..SIDES).map(move |i| {
-                let angle = TAU * f64::from(i) / f64::from(SIDES);
-                (right * angle.cos() + ahead * angle.sin()) * (radii * body.radius())
-            })
-        };
-        let places = [DVec3::ZERO].into_iter().chain(ASIDE.into_iter().flat_map(ring));
+        let rings = ASIDE.into_iter().flat_map(|radii| world.ring(radii * body.radius()));
+        let places = [DVec3::ZERO].into_iter().chain(rings);
         places.map(|aside| eye + aside).find_map(|place| {
             // In sight, before what is on the other side of a wall is asked for its floor.
             if !world.is_free(eye, place) {

@@ -35,6 +35,10 @@ const MAX_STEP_SECONDS: f64 = 0.25;
 const FAST_FACTOR: f64 = 4.0;
 /// Steepest view in degrees: straight up, left and right would flip.
 const MAX_PITCH: f64 = 89.0;
+/// A camera's `up` that leans no farther to a side than this, in radians, leans by rounding only.
+const NO_ROLL: f64 = 1e-4;
+/// The least share of +Y in an `up` that may stand for it: less is a scene whose up is another axis.
+const LEAST_UPWARD: f64 = 1e-3;
 /// Vertical fields of view that can be set, in degrees.
 pub const FOV_RANGE: std::ops::RangeInclusive<f32> = 20.0..=120.0;
 /// Degrees of turn per count of the mouse, as it starts.
@@ -356,7 +360,11 @@ fn stand(camera: &Camera) -> (DQuat, Pose) {
     let camera_up = camera.up.as_dvec3().normalize_or(DVec3::Y);
     // A plan view looks along Y with a horizontal `up`: that one gives the heading, while up remains +Y.
     let plan_view = forward.y.abs() > 0.999 && camera_up.y.abs() < 0.1;
-    let upright = if plan_view { DQuat::IDENTITY } else { DQuat::from_rotation_arc(DVec3::Y, camera_up) };
+    // A camera that is pitched as a whole has an `up` that leans along its view. That is no other up of the scene: the
+    // picture is the one that +Y makes.
+    let rightward = forward.cross(camera_up).normalize_or_zero();
+    let is_level = rightward.y.abs() <= NO_ROLL && camera_up.y > LEAST_UPWARD;
+    let upright = if plan_view || is_level { DQuat::IDENTITY } else { DQuat::from_rotation_arc(DVec3::Y, camera_up) };
     let local = upright.inverse() * forward;
     let heading = if plan_view { camera_up * -forward.y.signum() } else { local };
     let pose = Pose {

@@ -31,8 +31,11 @@ impl Pace {
 
     /// Sets the speed in metres a second, within the range that notches cover.
     pub fn set_speed(&mut self, speed: f64) {
-        self.notches = 0.0;
-        self.scroll((speed / self.usual).ln() / NOTCH.ln());
+        if !speed.is_nan() {
+            // Without the end, 0 would be infinitely many notches away.
+            let notches = (speed.max(0.0) / self.usual).ln() / NOTCH.ln();
+            self.notches = notches.clamp(-MAX_NOTCHES, MAX_NOTCHES);
+        }
     }
 
     /// Changes the speed by notches of the wheel.
@@ -61,6 +64,11 @@ mod tests {
         assert!(pace.speed().is_finite());
         pace.set_speed(3.5);
         assert!((pace.speed() - 3.5).abs() < 1e-9);
+        let slowest = 2.0 * NOTCH.powf(-MAX_NOTCHES);
+        for speed in [0.0, -1.0, 1e-300] {
+            pace.set_speed(speed);
+            assert_eq!(pace.speed(), slowest, "set to {speed}");
+        }
         pace.scroll(f64::NAN);
         pace.set_speed(f64::NAN);
         assert!(pace.speed() > 0.0);

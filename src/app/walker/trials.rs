@@ -354,3 +354,37 @@ fn home_is_home_on_foot_too() {
     go(&mut walker, &ground, FORWARD, 2.0, 60.0);
     assert!((eye(&walker).y - EYE).abs() < 1e-2, "{}", eye(&walker));
 }
+
+/// A camera at `eye` that is turned as a whole, as those of glTF are: its `up` is across its view.
+fn turned(eye: Vec3, yaw: f64, pitch: f64) -> Camera {
+    let turn = DQuat::from_rotation_y(yaw.to_radians()) * DQuat::from_rotation_x(pitch.to_radians());
+    let (forward, up) = (turn * DVec3::NEG_Z, turn * DVec3::Y);
+    Camera { eye, look_at: (eye.as_dvec3() + forward).as_vec3(), up: up.as_vec3(), ..Camera::default() }
+}
+
+#[test]
+fn a_camera_that_looks_down_with_its_own_up_does_not_tilt_the_scene() {
+    let ground = place([floor()]);
+    for (yaw, pitch) in [(0.0, -35.0), (130.0, 50.0), (-77.7, -86.0), (20.0, -89.9), (10.0, 0.0)] {
+        let home = turned(Vec3::new(3.3, 2.5, -1.7), yaw, pitch);
+        let mut walker = Walker::new(home, 12.0);
+        assert_eq!(walker.camera(), home, "bit for bit");
+        assert!(walker.up().distance(DVec3::Y) < 1e-12, "{} at {pitch}", walker.up());
+        assert!(walker.toggle_walking(&ground), "a floor at {pitch}");
+        go(&mut walker, &ground, FORWARD, 3.0, 60.0);
+        assert!((eye(&walker).y - EYE).abs() < 0.01, "{} at {pitch}", eye(&walker));
+        let (before, after) = (home.frame(64, 64), walker.camera().frame(64, 64));
+        assert!(pitch.abs() > MAX_PITCH || after.up.abs_diff_eq(before.up, 1e-4), "{} {}", before.up, after.up);
+        walker.look(DVec2::new(300.0, 0.0));
+        assert!(walker.camera().frame(64, 64).right.y.abs() < 1e-6, "the horizon stays level");
+    }
+}
+
+#[test]
+fn an_up_to_the_side_or_along_another_axis_is_the_scenes() {
+    for up in [Vec3::Z, Vec3::NEG_Y, Vec3::X, Vec3::new(0.3, 1.0, 0.1), Vec3::new(0.0, 1e-5, 1.0)] {
+        let home = Camera { eye: Vec3::ZERO, look_at: Vec3::new(0.1, 0.3, -0.2), up, ..Camera::default() };
+        let walker = Walker::new(home, 12.0);
+        assert!(walker.up().distance(up.as_dvec3().normalize()) < 1e-6, "{up}: {}", walker.up());
+    }
+}
