@@ -4,7 +4,8 @@ use super::Session;
 use crate::app::lighting::Dial;
 use crate::app::screenshot::{self, Place, Shot};
 use crate::app::{desktop, errands, walker};
-use std::path::Path;
+use directories::BaseDirs;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 impl Session {
@@ -41,6 +42,13 @@ impl Session {
             Some(None) => self.notices.tell(now, "screenshot as soon as the picture has all its samples"),
             Some(Some(shot)) => self.write(shot),
         }
+    }
+
+    /// Where the file of a recorded path goes: the folders that are tried, one after the other.
+    pub(super) fn path_folders(&self) -> Vec<PathBuf> {
+        let of_screenshots = self.screenshots.of(1).parent().map(Path::to_owned);
+        let home = BaseDirs::new().map(|folders| folders.home_dir().to_owned());
+        [Some(PathBuf::new()), of_screenshots, home].into_iter().flatten().collect()
     }
 
     pub(super) fn write(&self, shot: Shot) {
