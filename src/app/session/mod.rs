@@ -221,6 +221,9 @@ impl Session {
                 errands::News::Problem(text) => warnings.push(text),
             }
         }
+        if self.camerawork.is_due() {
+            warnings.push("no screenshot: the changed scene was not shown any more".to_owned());
+        }
         let record = self.tally.and_then(|tally| tally.record(self.load_ms));
         AppExit { camera, settings, notes, warnings, record }
     }
@@ -268,6 +271,9 @@ impl Session {
         self.picture.demand(now, self.rates.display);
         if self.shown.overlay {
             self.figures.demand(now, self.rates.figures);
+        }
+        if self.camerawork.is_due() {
+            self.take_screenshot(now);
         }
     }
 
