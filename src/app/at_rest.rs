@@ -2,7 +2,7 @@
 
 use super::tracer::{Job, Render};
 use crate::render::{Film, FrameStats};
-use crate::settings::Supersample;
+use crate::settings::{Settings, Supersample};
 use std::time::{Duration, Instant};
 
 /// Without a new view for this long, motion has stopped: longer than a pause between two movements of a mouse.
@@ -22,9 +22,7 @@ pub struct AtRest {
 impl AtRest {
     /// A frame of `job` was finished: once the view has rested it is refined, if that is wanted and makes it better.
     pub fn begin(&mut self, job: Job, now: Instant) {
-        let has_them = matches!(job.settings.supersample, Supersample::Grid { side } if side * side >= SAMPLES);
-        let wanted = job.settings.refine_at_rest && !has_them;
-        self.due = wanted.then_some(now + REST);
+        self.due = is_refined(&job.settings).then_some(now + REST);
         self.job = Some(job);
         if let Some(film) = &mut self.film {
             film.start_over();
@@ -54,6 +52,12 @@ impl AtRest {
         }
         Some((job, film, stats))
     }
+}
+
+/// Whether a view by these settings gathers samples at rest: that is wanted, and they have fewer of them.
+pub fn is_refined(settings: &Settings) -> bool {
+    let has_them = matches!(settings.supersample, Supersample::Grid { side } if side * side >= SAMPLES);
+    settings.refine_at_rest && !has_them
 }
 
 /// Whether the picture after `samples` passes is worth showing in place of a frame with `supersample`: with fewer samples

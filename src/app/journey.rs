@@ -1,11 +1,12 @@
 //! Recording where one goes, and going there again.
 
+use super::errands::{Errand, News};
 use crate::picture::{NumberedName, PendingFile, PictureError};
-use crate::scene::path::{Sample, Tolerance};
+use crate::scene::path::{READABLE_KEYS, Sample, Tolerance};
 use crate::scene::{Camera, CameraPath};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::thread::JoinHandle;
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 /// Frames a second of a recorded path.
@@ -13,39 +14,63 @@ const FPS: f64 = 60.0;
 /// How far a replay may be from what was recorded: the eye as a share of the surroundings, and angles in degrees.
 const DISTANCE_SHARE: f64 = 2e-4;
 const ANGLE: f64 = 0.05;
-/// Longest recording in places: an hour and more of movement without a rest.
-const MOST_SAMPLES: usize = 500_000;
-/// Of a rest, parts shorter than this are not looked at, in seconds.
-const SHORTEST_REST: f64 = 0.004;
+/// Times a second that a moving camera is noted: a mouse moves it far more often.
+const RATE: f64 = 120.0;
+/// Without a movement for so long, in seconds, the camera rests, and of a rest no shorter parts are noted. Together with the
+/// movement before it, it takes no more samples than a movement of the same time.
+const SHORTEST_REST: f64 = 2.0 / RATE;
+/// Longest recording in places, half an hour and more of movement without a rest: its file can be read. A rest before the
+/// end comes on top.
+const MOST_SAMPLES: usize = READABLE_KEYS - 1000;
 /// Name of the files of paths, and most numbers that are tried.
 const NAME: &str = "raywalk-path-%04d.json";
 const MOST_FILES: u64 = 9999;
-/// Until a file that is being written is asked after.
-pub const ASK_AGAIN: Duration = Duration::from_millis(50);
 
 /// A recording under way.
 #[derive(Debug)]
 struct Recorder {
     began: Instant,
     samples: Vec<Sample>,
+    /// The part of time, one of [`RATE`] a second, that the last sample stands for, unless it is the first one.
+    part: Option<u64>,
     /// When the camera was last seen, also where it had not moved.
     seen: f64,
 }
 
 impl Recorder {
+    fn new(began: Instant, camera: Camera) -> Self {
+        Self { began, samples: vec![Sample { t: 0.0, camera }], part: None, seen: 0.0 }
+    }
+
     /// Takes the camera of a moment.
     fn see(&mut self, now: Instant, camera: Camera) {
         let t = seconds(now.saturating_duration_since(self.began));
-        if self.samples.last().is_none_or(|last| last.camera != camera) && t > self.seen {
-            self.end_rest();
-            self.samples.push(Sample { t, camera });
+        if t <= self.seen {
+            return;
         }
-        self.seen = self.seen.max(t);
+        if self.samples.last().is_none_or(|last| last.camera != camera) {
+            let (sample, part) = (Sample { t, camera }, Some((t * RATE) as u64));
+            // Of each part of time, the last place counts.
+            match self.samples.last_mut().filter(|_| part == self.part) {
+                Some(last) => *last = sample,
+                None => {
+                    self.end_rest();
+                    self.samples.push(sample);
+                }
+            }
+            self.part = part;
+        }
+        self.seen = t;
     }
 
     /// Everything until now.
     fn samples(mut self) -> Vec<Sample> {
         self.end_rest();
+        if let Some(&last) = self.samples.last()
+            && last.t < self.seen
+        {
+            self.samples.push(Sample { t: self.seen, ..last });
+        }
         self.samples
     }
 
@@ -54,9 +79,12 @@ impl Recorder {
     fn end_rest(&mut self) {
         let Some(&last) = self.samples.last() else { return };
         let (start, end) = (last.t, self.seen);
+        if end - start < SHORTEST_REST {
+            return;
+        }
         let halves = |length: f64| std::iter::successors(Some(length / 2.0), |l| Some(l / 2.0));
-        let mut times: Vec<f64> = halves(end - start).take_while(|l| *l > SHORTEST_REST).map(|l| start + l).collect();
-        times.extend(halves(end - start).take_while(|l| *l > SHORTEST_REST).map(|l| end - l));
+        let parts = || halves(end - start).take_while(|l| *l > SHORTEST_REST);
+        let mut times: Vec<f64> = parts().map(|l| start + l).chain(parts().skip(1).map(|l| end - l)).collect();
         times.push(end);
         times.sort_by(f64::total_cmp);
         for t in times.into_iter().map(|t| seconds(Duration::from_secs_f64(t))) {
@@ -72,17 +100,34 @@ fn seconds(duration: Duration) -> f64 {
     duration.as_micros() as f64 / 1e6
 }
 
-/// A path that was written, or why it was not.
-type Written = Result<(CameraPath, PathBuf), String>;
-
 /// Recording and replay.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Journey {
     recorder: Option<Recorder>,
-    writer: Option<JoinHandle<Written>>,
+    /// The errands that make paths of recordings send them here, in the order of the recordings.
+    made: (Sender<CameraPath>, Receiver<CameraPath>),
+    /// Paths that are still to come.
+    expected: usize,
     last: Option<Arc<CameraPath>>,
     /// The path that is replayed, and since when.
     replay: Option<(Arc<CameraPath>, Instant)>,
+}
+
+/// What became of the wish for a replay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// It goes on.
+    Begun,
+    /// The last recording is still being made into a path.
+    TooSoon,
+    /// There is no recording.
+    Nothing,
+}
+
+impl Default for Journey {
+    fn default() -> Self {
+        Self { recorder: None, made: channel(), expected: 0, last: None, replay: None }
+    }
 }
 
 impl Journey {
@@ -96,17 +141,10 @@ impl Journey {
         self.replay.is_some()
     }
 
-    /// When it has to be asked again at the latest, if at all, given how often the view is to change.
-    pub fn next(&self, now: Instant, step: Duration) -> Option<Instant> {
-        let writing = self.writer.is_some().then_some(now + ASK_AGAIN);
-        self.replay.is_some().then_some(now + step).or(writing)
-    }
-
     /// Starts a recording.
     pub fn record(&mut self, now: Instant, camera: Camera) {
         self.replay = None;
-        let first = Sample { t: 0.0, camera };
-        self.recorder = Some(Recorder { began: now, samples: vec![first], seen: 0.0 });
+        self.recorder = Some(Recorder::new(now, camera));
     }
 
     /// Takes the camera of this moment. True when the recording has become too long and ought to end.
@@ -116,34 +154,47 @@ impl Journey {
         recorder.samples.len() >= MOST_SAMPLES
     }
 
-    /// Ends the recording; a file is written to `folder` meanwhile. `size` is that of the surroundings in metres.
-    pub fn finish(&mut self, now: Instant, camera: Camera, folder: PathBuf, size: f64) {
-        let Some(mut recorder) = self.recorder.take() else { return };
+    /// Ends the recording. Returns what makes a path of it and writes that to the first of `folders` that can be written;
+    /// `size` is that of the surroundings in metres, `how_to` what to say of a replay.
+    pub fn finish(
+        &mut self,
+        now: Instant,
+        camera: Camera,
+        folders: Vec<PathBuf>,
+        size: f64,
+        how_to: String,
+    ) -> Option<Errand> {
+        let mut recorder = self.recorder.take()?;
         recorder.see(now, camera);
         let tolerance = Tolerance { distance: size * DISTANCE_SHARE, angle: ANGLE };
-        let samples = recorder.samples();
-        // The fit takes a while for a long walk, and a disk may be slow.
-        self.writer = Some(std::thread::spawn(move || {
-            let path = CameraPath::fitted(&samples, FPS, tolerance).ok_or("nothing was recorded")?;
-            let file = write(&folder, &path.to_json()).map_err(|error| error.to_string())?;
-            Ok((path, file))
-        }));
-    }
-
-    /// What came of the file that is being written, once it is known: where it is, or why it is not.
-    pub fn written(&mut self) -> Option<Result<PathBuf, String>> {
-        let writer = self.writer.take_if(|writer| writer.is_finished())?;
-        let written = writer.join().unwrap_or_else(|_| Err("the recording was lost".to_owned()));
-        Some(written.map(|(path, file)| {
-            self.last = Some(Arc::new(path));
-            file
+        let made = self.made.0.clone();
+        self.expected += 1;
+        Some(Box::new(move || {
+            let path = CameraPath::fitted(&recorder.samples(), FPS, tolerance)?;
+            let text = path.to_json();
+            // It can be replayed also where it cannot be written. At the end no one listens any more.
+            let _ = made.send(path);
+            Some(match write(&folders, &text) {
+                Ok((file, None)) => News::Done(format!("Path written to {}{how_to}", file.display())),
+                Ok((file, Some(error))) => {
+                    News::Problem(format!("Path written to {} ({error}){how_to}", file.display()))
+                }
+                Err(error) => News::Problem(format!("No file of the recorded path ({error}){how_to}")),
+            })
         }))
     }
 
-    /// Goes where the last recording went. False where there is none.
-    pub fn replay(&mut self, now: Instant) -> bool {
+    /// Goes where the last recording went.
+    pub fn replay(&mut self, now: Instant) -> Start {
+        for path in self.made.1.try_iter() {
+            self.expected -= 1;
+            self.last = Some(Arc::new(path));
+        }
+        if self.expected > 0 {
+            return Start::TooSoon;
+        }
         self.replay = self.last.clone().map(|path| (path, now));
-        self.is_replaying()
+        if self.is_replaying() { Start::Begun } else { Start::Nothing }
     }
 
     /// Ends the replay, if there is one.
@@ -163,9 +214,21 @@ impl Journey {
     }
 }
 
-/// Writes a file of a name that is not taken.
-fn write(folder: &Path, text: &str) -> Result<PathBuf, PictureError> {
-    let name = NumberedName::new(&folder.join(NAME));
+/// Writes a file of a name that is not taken to the first folder that takes it; with it, why those before did not.
+fn write(folders: &[PathBuf], text: &str) -> Result<(PathBuf, Option<String>), String> {
+    let mut refused = None;
+    for folder in folders {
+        match write_to(folder, text) {
+            Ok(file) => return Ok((file, refused)),
+            Err(error) => refused = refused.or(Some(error.to_string())),
+        }
+    }
+    Err(refused.unwrap_or_else(|| "there is no folder for it".to_owned()))
+}
+
+fn write_to(folder: &Path, text: &str) -> Result<PathBuf, PictureError> {
+    let name = folder.join(NAME);
+    let name = NumberedName::new(&std::path::absolute(&name).unwrap_or(name));
     let names = (1..=MOST_FILES).map(|number| name.of(number));
     PendingFile::beside(&name.of(1))?.commit_to_free(names, |sink| Ok(sink.write_all(text.as_bytes())?))
 }
@@ -173,6 +236,7 @@ fn write(folder: &Path, text: &str) -> Result<PathBuf, PictureError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::temporary::Folder;
     use glam::Vec3;
 
     fn view(x: f32) -> Camera {
@@ -183,34 +247,34 @@ mod tests {
         start + Duration::from_secs_f64(seconds)
     }
 
+    /// What is told of the recording, once it is made and written.
+    fn told(journey: &mut Journey, end: (Instant, Camera), folders: &[&Path]) -> News {
+        let folders = folders.iter().map(|folder| folder.to_path_buf()).collect();
+        let errand = journey.finish(end.0, end.1, folders, 10.0, ": P replays it".to_owned());
+        assert_eq!(journey.replay(end.0), Start::TooSoon);
+        errand.expect("there is a recording")().expect("there is news")
+    }
+
     #[test]
     fn what_was_recorded_is_replayed_and_no_file_is_written_over() {
-        let folder = std::env::temp_dir().join(format!("raywalk-journey-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("it can be made");
+        let folder = Folder::new();
         let start = Instant::now();
         let mut journey = Journey::default();
-        assert!(!journey.replay(start), "nothing is recorded yet");
-        let mut files = Vec::new();
-        for _ in 0..2 {
+        assert_eq!(journey.replay(start), Start::Nothing);
+        for number in 1..=2 {
             journey.record(start, view(0.0));
             // A rest of a second, a walk of two, and a rest.
             for i in 0..400 {
                 let t = f64::from(i) * 0.01;
                 journey.see(after(start, t), view((t - 1.0).clamp(0.0, 2.0) as f32));
             }
-            journey.finish(after(start, 4.0), view(2.0), folder.clone(), 10.0);
-            let written = loop {
-                match journey.written() {
-                    Some(written) => break written,
-                    None => std::thread::sleep(Duration::from_millis(1)),
-                }
-            };
-            files.push(written.expect("it can be written"));
+            let news = told(&mut journey, (after(start, 4.0), view(2.0)), &[&folder.0]);
+            let file = folder.0.join(format!("raywalk-path-000{number}.json"));
+            assert_eq!(news, News::Done(format!("Path written to {}: P replays it", file.display())));
         }
-        assert_ne!(files[0], files[1]);
-        let path = CameraPath::load(&files[1]).expect("it is a path");
+        let path = CameraPath::load(&folder.0.join("raywalk-path-0002.json")).expect("it is a path");
         assert!((path.duration() - 4.0).abs() < 1e-6, "{}", path.duration());
-        assert!(journey.replay(start));
+        assert_eq!(journey.replay(start), Start::Begun);
         for i in 0..=40 {
             let t = f64::from(i) * 0.1;
             let camera = journey.camera(after(start, t), &view(7.0)).expect("it goes on");
@@ -220,12 +284,64 @@ mod tests {
             assert_eq!(camera, path.camera_after(t, &view(7.0)), "as any replay of the file");
         }
         assert!(!journey.is_replaying(), "it ended");
-        std::fs::remove_dir_all(&folder).expect("it is ours");
     }
 
     #[test]
-    fn a_file_that_cannot_be_written_is_told() {
-        let error = write(Path::new("/no/such/folder"), "").expect_err("there is no such folder").to_string();
-        assert!(error.contains("cannot write") && error.contains("/no/such/folder/raywalk-path-0001.json"), "{error}");
+    fn a_moving_camera_is_noted_so_often_and_a_rest_from_its_first_moment() {
+        let start = Instant::now();
+        let mut recorder = Recorder::new(start, view(0.0));
+        // A mouse of a thousand events a second, for one second; then a rest of ten.
+        for i in 1..=1000 {
+            recorder.see(after(start, f64::from(i) / 1000.0), view(i as f32 / 1000.0));
+        }
+        assert!((119..=122).contains(&recorder.samples.len()), "{}", recorder.samples.len());
+        let last = recorder.samples.last().copied();
+        assert_eq!(last, Some(Sample { t: 1.0, camera: view(1.0) }));
+        recorder.see(after(start, 11.0), view(1.0));
+        recorder.see(after(start, 11.001), view(3.0));
+        let samples = recorder.samples();
+        assert!(samples.len() < 150, "{}", samples.len());
+        assert!(samples.windows(2).all(|pair| pair[0].t < pair[1].t));
+        let is_there = |sample: &&Sample| (1.0..=11.0).contains(&sample.t);
+        assert!(samples.iter().filter(is_there).all(|sample| sample.camera == view(1.0)));
+        assert_eq!(samples.last().map(|sample| sample.camera), Some(view(3.0)));
+    }
+
+    #[test]
+    fn a_recording_ends_before_its_file_could_not_be_read() {
+        let start = Instant::now();
+        let mut journey = Journey::default();
+        journey.record(start, view(0.0));
+        // A step after every rest, each of which is as short as it can be.
+        let end = (1..).find(|&i| {
+            let t = f64::from(i) / 55.0;
+            journey.see(after(start, t - 0.001), view((i - 1) as f32)) || journey.see(after(start, t), view(i as f32))
+        });
+        let end = f64::from(end.expect("it ends")) / 55.0;
+        assert!(end > 1800.0, "after {end} s");
+        let recorder = journey.recorder.as_mut().expect("it goes on");
+        let days = after(start, end + 1e6);
+        recorder.see(days, recorder.samples[recorder.samples.len() - 1].camera);
+        recorder.end_rest();
+        assert!(recorder.samples.len() <= READABLE_KEYS, "{}", recorder.samples.len());
+    }
+
+    #[test]
+    fn where_no_file_can_be_written_the_next_folder_is_tried_and_the_replay_is_kept() {
+        let folder = Folder::new();
+        let (missing, start) = (folder.0.join("missing"), Instant::now());
+        let mut journey = Journey::default();
+        let why = format!("{}: cannot write", missing.join("raywalk-path-0001.json").display());
+        for folders in [vec![missing.as_path()], vec![&missing, &folder.0]] {
+            journey.record(start, view(0.0));
+            let News::Problem(text) = told(&mut journey, (after(start, 1.0), view(1.0)), &folders) else {
+                panic!("nothing is wrong")
+            };
+            assert!(text.contains(&why) && text.ends_with("): P replays it"), "{text}");
+            assert_eq!(text.contains("Path written to"), folders.len() == 2, "{text}");
+            assert_eq!(journey.replay(start), Start::Begun);
+            assert_eq!(journey.camera(after(start, 1.0), &view(7.0)).map(|camera| camera.eye), Some(view(1.0).eye));
+        }
+        assert_eq!(folder.names(), ["raywalk-path-0001.json"]);
     }
 }

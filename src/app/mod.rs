@@ -96,6 +96,8 @@ pub struct AppExit {
     pub camera: Camera,
     /// The last settings.
     pub settings: Settings,
+    /// What was done at the end, such as a file that was written, one line each.
+    pub notes: Vec<String>,
     /// What could not be done at the end, one line each.
     pub warnings: Vec<String>,
     /// What frames cost since scene, settings or size changed last, where that was asked for and there was one.

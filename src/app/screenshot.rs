@@ -1,6 +1,6 @@
 //! Screenshots: the picture on display as a PNG that says how to make it again.
 
-use super::at_rest::SAMPLES;
+use super::at_rest::{self, SAMPLES};
 use super::errands::{Errand, News};
 use super::maps::Map;
 use super::tracer::Job;
@@ -10,6 +10,7 @@ use crate::scene::{Camera, NamedCamera};
 use crate::settings::{ROWS, Row, Settings, Supersample};
 use glam::Vec3;
 use serde_json::json;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// Where screenshots go unless something else is asked for.
@@ -53,6 +54,11 @@ impl Shot {
         Self { picture: EightBit::of_film(film), job: job.clone(), samples, place }
     }
 
+    /// Whether it is to have more samples, as long as its view is the one that is asked for.
+    fn is_under_way(&self) -> bool {
+        at_rest::is_refined(&self.job.settings) && self.samples != Some(SAMPLES)
+    }
+
     /// Whether flags can make the same picture: there are none for a part of the samples.
     fn is_final(&self) -> bool {
         self.samples.is_none_or(|samples| samples == SAMPLES)
@@ -75,28 +81,36 @@ impl Shot {
 #[derive(Debug, Default)]
 pub struct Camerawork {
     waiting: Option<Shot>,
+    /// One was asked for that is of the next picture.
+    is_due: bool,
 }
 
 impl Camerawork {
-    /// A screenshot was asked for: returns it if it can be written, or lets it wait until its view is refined.
-    pub fn ask(&mut self, shot: Shot) -> Option<Shot> {
-        if shot.is_final() {
+    /// A screenshot was asked for: returns it if it can be written, or lets it wait until its view is refined, which
+    /// comes while `is_kept`: nothing else has been asked of the tracer since.
+    pub fn ask(&mut self, shot: Shot, is_kept: bool) -> Option<Shot> {
+        if shot.is_final() && !(is_kept && shot.is_under_way()) {
             return Some(shot);
         }
         self.waiting = Some(shot);
         None
     }
 
-    /// Whether one waits.
-    pub fn is_waiting(&self) -> bool {
-        self.waiting.is_some()
+    /// A screenshot was asked for that cannot be taken before the next picture.
+    pub fn postpone(&mut self) {
+        self.is_due = true;
+    }
+
+    /// Whether one was postponed; asked again, it is not.
+    pub fn is_due(&mut self) -> bool {
+        std::mem::take(&mut self.is_due)
     }
 
     /// A frame came while one waited. Returns what is to be written: the refined picture, or, where the view was left,
     /// what was seen.
     pub fn frame(&mut self, film: &Film, job: &Job, samples: Option<u32>) -> Option<Shot> {
         let waiting = self.waiting.take()?;
-        if waiting.job != *job || samples.is_none() {
+        if waiting.job != *job || samples < waiting.samples {
             return Some(waiting);
         }
         if samples == Some(SAMPLES) {
@@ -182,12 +196,12 @@ fn command(shot: &Shot, settings: &Settings) -> String {
     let vector = |vector: Vec3| format!("{},{},{}", vector.x, vector.y, vector.z);
     let Camera { eye, look_at, up, fov, near, far } = shot.job.camera;
     let mut words = vec!["raywalk".to_owned(), "render".to_owned()];
-    words.extend(place.file.as_ref().map(|file| quoted(&file.display().to_string())));
+    words.extend(place.file.as_ref().map(|file| quoted(file.as_os_str())));
     words.push(format!("--size {}x{}", shot.picture.width, shot.picture.height));
     // Near and far have no flags of their own: they come with a camera of the scene.
     let is_alike = |camera: &NamedCamera| (camera.camera.near, camera.camera.far) == (near, far);
     if let Some(index) = place.cameras.iter().position(is_alike).filter(|index| *index > 0) {
-        words.push(format!("--camera {}", quoted(&place.cameras[index].name)));
+        words.push(format!("--camera {}", quoted(place.cameras[index].name.as_ref())));
     }
     words.push(format!("--eye {} --look-at {} --up {} --fov {fov}", vector(eye), vector(look_at), vector(up)));
     let exact = Settings::exact();
@@ -199,13 +213,22 @@ fn command(shot: &Shot, settings: &Settings) -> String {
     words.join(" ")
 }
 
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "._-/+:@%,".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        word.to_owned()
+/// A word as a shell takes it, in ASCII: text of that kind is what every program reads of a PNG.
+fn quoted(word: &OsStr) -> String {
+    let bytes = word.as_encoded_bytes();
+    let is_plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"._-/+:@%,".contains(byte);
+    let is_visible = |byte: &u8| matches!(byte, b' '..=b'~');
+    if !bytes.is_empty() && bytes.iter().all(is_plain) {
+        word.to_string_lossy().into_owned()
+    } else if bytes.iter().all(is_visible) {
+        format!("'{}'", word.to_string_lossy().replace('\'', r"'\''"))
     } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
+        let escaped = |byte: &u8| match byte {
+            b'\'' | b'\\' => format!("\\{}", char::from(*byte)),
+            b' '..=b'~' => char::from(*byte).to_string(),
+            _ => format!("\\{byte:03o}"),
+        };
+        format!("$'{}'", bytes.iter().map(escaped).collect::<String>())
     }
 }
 
@@ -261,21 +284,39 @@ mod tests {
         assert_eq!(refined, format!("raywalk render {view} --supersample 16"));
         let first = Place { cameras: place(None).cameras.split_off(1), ..place(None) };
         assert!(!of(shot(None), first).contains("--camera"));
+        let of_file = |file| of(shot(None), place(Some(file)));
+        assert!(of_file("it's.json").starts_with(r"raywalk render 'it'\''s.json' --size"));
+        assert!(of_file("d'été\n.json").starts_with(r"raywalk render $'d\'\303\251t\303\251\012.json' --size"));
     }
 
     #[test]
     fn a_view_at_rest_is_taken_when_it_is_refined_and_one_that_is_left_as_it_was() {
         let film = Film::new(8, 4, Planes::default());
         let mut camerawork = Camerawork::default();
-        assert_eq!(camerawork.ask(shot(None)), Some(shot(None)), "at once");
+        assert_eq!(camerawork.ask(shot(None), true), Some(shot(None)), "it will not be refined");
         assert_eq!(camerawork.frame(&film, &job(), None), None, "nothing waits");
-        assert_eq!(camerawork.ask(shot(Some(3))), None);
-        assert_eq!(camerawork.frame(&film, &job(), Some(9)), None);
-        assert_eq!(camerawork.frame(&film, &job(), Some(SAMPLES)), Some(shot(Some(SAMPLES))));
-        assert_eq!(camerawork.ask(shot(Some(3))), None);
-        let elsewhere = Job { width: 9, ..job() };
-        assert_eq!(camerawork.frame(&film, &elsewhere, None), Some(shot(Some(3))));
-        assert_eq!(camerawork.give_up(), None);
+        let refined = Job { settings: Settings { refine_at_rest: true, ..job().settings }, ..job() };
+        let shot = |samples| Shot { job: refined.clone(), ..shot(samples) };
+        assert_eq!(camerawork.ask(shot(None), false), Some(shot(None)), "on the move");
+        let last = Some(SAMPLES);
+        assert_eq!(camerawork.ask(shot(last), true), Some(shot(last)), "it has them all");
+        for samples in [None, Some(3)] {
+            assert_eq!(camerawork.ask(shot(samples), true), None, "{samples:?}");
+            assert_eq!(camerawork.frame(&film, &refined, Some(9)), None);
+            assert_eq!(camerawork.frame(&film, &refined, last), Some(shot(last)));
+            assert_eq!(camerawork.ask(shot(samples), true), None);
+            let elsewhere = Job { width: 9, ..refined.clone() };
+            assert_eq!(camerawork.frame(&film, &elsewhere, None), Some(shot(samples)), "as it was seen");
+            assert_eq!(camerawork.give_up(), None);
+        }
+    }
+
+    #[test]
+    fn a_postponed_one_is_due_once() {
+        let mut camerawork = Camerawork::default();
+        assert!(!camerawork.is_due());
+        camerawork.postpone();
+        assert!(camerawork.is_due() && !camerawork.is_due());
     }
 
     #[test]

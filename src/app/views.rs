@@ -4,6 +4,8 @@ use super::at_rest::AtRest;
 use super::survey::of_frames;
 use super::tracer::{Job, Render, TracedFrame};
 use crate::render::{Film, Planes};
+use crate::scene::Scene;
+use std::sync::Arc;
 
 /// What is kept of views.
 #[derive(Debug, Default)]
@@ -17,6 +19,7 @@ impl Views {
     /// Adds to a frame, whose own picture was traced, what its job asks for besides: the picture by other settings, and a map's
     /// colours. False when that was cancelled.
     pub fn complete(&mut self, frame: &mut TracedFrame, film_for: &dyn Fn(&Job) -> Film, render: Render<'_>) -> bool {
+        self.exact.stay_in(&frame.job.scene);
         if let Some(settings) = &frame.job.aspect.beside {
             let mut film = film_for(&frame.job);
             let stats = render(&frame.job.with_settings(settings.clone()), &mut film);
@@ -47,6 +50,11 @@ struct ExactView {
 }
 
 impl ExactView {
+    /// Gives up what is kept of other scenes than `scene`: it would hold all of them in memory.
+    fn stay_in(&mut self, scene: &Arc<Scene>) {
+        self.traced.take_if(|(job, _)| !Arc::ptr_eq(&job.scene, scene));
+    }
+
     /// The exact picture of what `job` shows; `None` when it was cancelled.
     fn of(&mut self, job: &Job, render: Render<'_>) -> Option<&Film> {
         let exact = job.with_settings(of_frames(&job.settings.reference(), 0));
@@ -73,9 +81,9 @@ mod tests {
     use crate::app::maps::{Key, Map};
     use crate::app::methods::Aspect;
     use crate::render::{Scratch, render_frame};
-    use crate::scene::{LoadOptions, Scene, builtin};
+    use crate::scene::{LoadOptions, builtin, nothing};
     use crate::settings::{Settings, Visibility};
-    use std::sync::{Arc, LazyLock};
+    use std::sync::LazyLock;
     use std::time::Instant;
 
     /// Completes a frame of the built-in scene; its picture was traced before. Returns the settings of what was traced then.
@@ -122,6 +130,18 @@ mod tests {
         let mut other = job(aspect);
         other.settings.fill = crate::settings::Fill::Hit;
         assert!(completed(&mut views, other).1.is_empty(), "of other settings the exact picture is the same");
+    }
+
+    #[test]
+    fn a_scene_that_was_left_is_not_kept() {
+        let mut views = Views::default();
+        let scene = Arc::new(nothing().expect("it is built in"));
+        let left = Arc::downgrade(&scene);
+        let aspect = Aspect { map: Map::Error, ..Aspect::default() };
+        completed(&mut views, Job { scene, ..job(aspect) });
+        assert!(left.upgrade().is_some(), "its exact picture may be wanted again");
+        completed(&mut views, job(Aspect::default()));
+        assert!(left.upgrade().is_none());
     }
 
     #[test]

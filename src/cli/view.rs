@@ -76,6 +76,7 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
             Err(error) => return Err(error.into()),
             Ok(end) => {
                 if !options.reading.quiet {
+                    end.notes.iter().for_each(|text| stdout::note(text));
                     end.warnings.iter().for_each(|warning| stdout::note(&format!("warning: {warning}")));
                 }
                 return tell(&options, end.record.as_ref());

@@ -3,10 +3,10 @@
 use super::events::WindowHost;
 use super::{NO_ROOM, STEP, Session};
 use crate::app::input::Command;
+use crate::app::journey::Start;
 use crate::app::scenes::Wish;
 use crate::app::{desktop, methods};
 use crate::scene::{self, Camera};
-use std::path::PathBuf;
 use std::time::Instant;
 
 /// A step of the size of panel and text.
@@ -85,20 +85,31 @@ impl Session {
     }
 
     pub(super) fn toggle_recording(&mut self, now: Instant) {
-        let camera = self.walker.camera();
-        if self.journey.is_recording() {
-            self.journey.finish(now, camera, PathBuf::new(), self.walker.surroundings());
-        } else {
-            self.journey.record(now, camera);
+        if !self.finish_recording(now) {
+            self.journey.record(now, self.walker.camera());
             self.notices.tell(now, self.labels.of("Recording where you go: R stops"));
         }
+    }
+
+    /// Ends the recording and has it written, if there is one.
+    pub(super) fn finish_recording(&mut self, now: Instant) -> bool {
+        let how_to = format!(": {}", self.labels.of("P replays it"));
+        let (camera, size) = (self.walker.camera(), self.walker.surroundings());
+        let errand = self.journey.finish(now, camera, self.path_folders(), size, how_to);
+        let was_recording = errand.is_some();
+        errand.into_iter().for_each(|errand| self.errands.run(errand));
+        was_recording
     }
 
     pub(super) fn toggle_replay(&mut self, now: Instant) {
         if self.journey.is_recording() {
             self.notices.warn(now, self.labels.of("Still recording: R stops"));
-        } else if !self.journey.stop_replay() && !self.journey.replay(now) {
-            self.notices.warn(now, self.labels.of("Nothing is recorded yet: R starts"));
+        } else if !self.journey.stop_replay() {
+            match self.journey.replay(now) {
+                Start::Begun => {}
+                Start::TooSoon => self.notices.warn(now, "The recording is still being made into a path"),
+                Start::Nothing => self.notices.warn(now, self.labels.of("Nothing is recorded yet: R starts")),
+            }
         }
     }
 
@@ -109,19 +120,11 @@ impl Session {
             self.walker.go_to(camera);
         }
         if self.journey.see(now, self.walker.camera()) {
-            self.toggle_recording(now);
-        }
-        if let Some(written) = self.journey.written() {
-            match written {
-                Ok(file) => {
-                    let told = format!("Path written to {}: P replays it", file.display());
-                    self.notices.tell(now, self.labels.of(&told));
-                }
-                Err(reason) => self.notices.warn(now, reason),
-            }
+            self.finish_recording(now);
+            self.notices.warn(now, "The recording has ended: it is as long as can be");
             self.repaint(now);
         }
-        self.journey.next(now, STEP)
+        self.journey.is_replaying().then_some(now + STEP)
     }
 
     /// Fly or walk. The speed that held keys had so far was that of the other.

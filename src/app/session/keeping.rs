@@ -4,7 +4,9 @@ use super::Session;
 use crate::app::lighting::Dial;
 use crate::app::screenshot::{self, Place, Shot};
 use crate::app::{desktop, errands, walker};
-use std::path::Path;
+use directories::BaseDirs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 impl Session {
@@ -27,20 +29,36 @@ impl Session {
 
     /// Keeps the picture on display as a file, or what it is about to become.
     pub(super) fn take_screenshot(&mut self, now: Instant) {
-        let film = self.fresh.as_ref().map(|frame| &frame.film).or_else(|| self.presenter.frame());
-        let shot = film.zip(self.traced.as_ref()).map(|(film, (job, samples))| {
-            let place = Place {
-                file: self.scenes.file().map(Path::to_owned),
-                cameras: self.scene.cameras.clone(),
-                turned: self.lighting.dials().iter().filter_map(Dial::turned).collect(),
-            };
-            Shot::new(film, job, *samples, place)
-        });
-        match shot.map(|shot| self.camerawork.ask(shot)) {
-            None => self.notices.warn(now, "no picture yet"),
-            Some(None) => self.notices.tell(now, "screenshot as soon as the picture has all its samples"),
-            Some(Some(shot)) => self.write(shot),
+        // Of two sides only both films together are what is seen.
+        self.show_frame();
+        let Some((film, (job, samples))) = self.presenter.frame().zip(self.traced.as_ref()) else {
+            self.notices.warn(now, "no picture yet");
+            return;
+        };
+        if !Arc::ptr_eq(&job.scene, &self.lit) {
+            // What there is to say of the scene and its light is not of this picture.
+            self.camerawork.postpone();
+            self.notices.tell(now, "screenshot as soon as the changed scene is shown");
+            return;
         }
+        let place = Place {
+            file: self.scenes.file().map(Path::to_owned),
+            cameras: self.scene.cameras.clone(),
+            turned: self.lighting.dials().iter().filter_map(Dial::turned).collect(),
+        };
+        let is_kept = self.posted.as_ref() == Some(job);
+        let shot = Shot::new(film, job, *samples, place);
+        match self.camerawork.ask(shot, is_kept) {
+            None => self.notices.tell(now, "screenshot as soon as the picture has all its samples"),
+            Some(shot) => self.write(shot),
+        }
+    }
+
+    /// Where the file of a recorded path goes: the folders that are tried, one after the other.
+    pub(super) fn path_folders(&self) -> Vec<PathBuf> {
+        let of_screenshots = self.screenshots.of(1).parent().map(Path::to_owned);
+        let home = BaseDirs::new().map(|folders| folders.home_dir().to_owned());
+        [Some(PathBuf::new()), of_screenshots, home].into_iter().flatten().collect()
     }
 
     pub(super) fn write(&self, shot: Shot) {

@@ -211,12 +211,21 @@ impl Session {
         if let Some(shot) = self.camerawork.give_up() {
             self.write(shot);
         }
-        let warnings = self.errands.finish().into_iter().filter_map(|news| match news {
-            errands::News::Problem(text) => Some(text),
-            errands::News::Done(_) => None,
-        });
+        let size = self.walker.surroundings();
+        let recorded = self.journey.finish(Instant::now(), camera, self.path_folders(), size, String::new());
+        recorded.into_iter().for_each(|errand| self.errands.run(errand));
+        let (mut notes, mut warnings) = (Vec::new(), Vec::new());
+        for news in self.errands.finish() {
+            match news {
+                errands::News::Done(text) => notes.push(text),
+                errands::News::Problem(text) => warnings.push(text),
+            }
+        }
+        if self.camerawork.is_due() {
+            warnings.push("no screenshot: the changed scene was not shown any more".to_owned());
+        }
         let record = self.tally.and_then(|tally| tally.record(self.load_ms));
-        AppExit { camera, settings, warnings: warnings.collect(), record }
+        AppExit { camera, settings, notes, warnings, record }
     }
 
     /// Takes the newest frame from the tracer, to be shown when it is time, and what a search has come to.
@@ -265,6 +274,9 @@ impl Session {
         self.picture.demand(now, self.rates.display);
         if self.shown.overlay {
             self.figures.demand(now, self.rates.figures);
+        }
+        if self.camerawork.is_due() {
+            self.take_screenshot(now);
         }
     }
 

@@ -36,6 +36,12 @@ impl Session {
 
     /// Goes to another scene.
     pub(super) fn enter(&mut self, Arrival { scene, camera, load_ms, size, .. }: Arrival) {
+        // Ways lead through the scene that they were gone in.
+        let now = Instant::now();
+        self.journey.stop_replay();
+        if self.finish_recording(now) {
+            self.notices.tell(now, "The recording has ended: this is another scene");
+        }
         self.load_ms = load_ms;
         self.walker.enter(&scene, camera);
         self.lighting = Lighting::of(&scene);

@@ -10,29 +10,31 @@
 //! target and field of view each follow a cubic Hermite spline whose tangents are the three-point differences of
 //! their neighbours (Catmull-Rom for keys evenly spaced in time). A key without `fov` takes that of the camera which
 //! the walk starts from; its near and far limits hold for the whole path, and so does its `up`, unless the path gives
-//! one (`"up": [0, 1, 0]`) beside `fps`.
+//! one (`"up": [0, 1, 0]`) beside `fps`. A key may give another `up`, which holds from it on.
 
+mod curve;
 mod fit;
 
 pub use fit::{Sample, Tolerance};
 
 use super::error::{Place, SceneError};
 use super::{Camera, Warning};
+use curve::Stretch;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Largest file read as a path, in bytes: a hundred thousand keys.
-const MAX_BYTES: u64 = 16 << 20;
+/// Largest file read as a path, in bytes.
+const MAX_BYTES: u64 = 64 << 20;
+/// So many keys make a file that can be read, whatever numbers are in them.
+pub const READABLE_KEYS: usize = 250_000;
 
 /// A camera that moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraPath {
     fps: f64,
-    /// What is up all along; else that of the camera which the walk starts from.
-    up: Option<[f64; 3]>,
     /// At least one, in strictly ascending order of time.
     keys: Vec<Key>,
 }
@@ -46,6 +48,10 @@ struct Key {
     look_at: [f64; 3],
     #[serde(skip_serializing_if = "Option::is_none")]
     fov: Option<f64>,
+    /// What is up from here on: as in the key before where the file gives none, at first that of the camera which the
+    /// walk starts from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    up: Option<[f64; 3]>,
 }
 
 /// The file as it stands.
@@ -95,7 +101,7 @@ impl CameraPath {
             place: Place { file: file.to_owned(), line_column, pointer },
             message,
         };
-        let path: PathFile = serde_json::from_str(text).map_err(|error| {
+        let mut path: PathFile = serde_json::from_str(text).map_err(|error| {
             let message = error.to_string();
             // The place is told apart from the message; serde appends it to the text.
             let message = message.split(" at line ").next().unwrap_or(&message).to_owned();
@@ -108,7 +114,8 @@ impl CameraPath {
         if !(path.fps > 0.0 && path.fps <= 10_000.0) {
             return wrong("/fps".into(), "expected frames per second above 0, at most 10000");
         }
-        if path.up.is_some_and(|up| !DVec3::from(up).as_vec3().is_finite() || up == [0.0; 3]) {
+        let is_no_direction = |up: [f64; 3]| !DVec3::from(up).as_vec3().is_finite() || up == [0.0; 3];
+        if path.up.is_some_and(is_no_direction) {
             return wrong("/up".into(), "expected a direction, not all zeros");
         }
         if path.keys.is_empty() {
@@ -122,21 +129,36 @@ impl CameraPath {
             if key.fov.is_some_and(|fov| !(fov > 0.0 && fov < 180.0)) {
                 return wrong(format!("/keys/{i}/fov"), "expected degrees above 0 and below 180");
             }
+            if key.up.is_some_and(is_no_direction) {
+                return wrong(format!("/keys/{i}/up"), "expected a direction, not all zeros");
+            }
             if i > 0 && key.t <= path.keys[i - 1].t {
                 return wrong(format!("/keys/{i}/t"), "expected a time after that of the key before");
             }
         }
-        Ok(Self { fps: path.fps, up: path.up, keys: path.keys })
+        let mut up = path.up;
+        for key in &mut path.keys {
+            up = key.up.or(up);
+            key.up = up;
+        }
+        Ok(Self { fps: path.fps, keys: path.keys })
     }
 
     /// The path as a JSON file, a key a line.
     pub fn to_json(&self) -> String {
         // Numbers and lists can always be written.
-        let up = self.up.and_then(|up| serde_json::to_string(&up).ok());
-        let up = up.map_or_else(String::new, |up| format!(" \"up\": {up},"));
-        let lines = self.keys.iter().filter_map(|key| serde_json::to_string(key).ok());
-        let keys: Vec<String> = lines.map(|line| format!("    {line}")).collect();
-        format!("{{ \"version\": 1, \"fps\": {},{up}\n  \"keys\": [\n{}\n  ] }}\n", self.fps, keys.join(",\n"))
+        let mut up = self.keys[0].up;
+        let first = up.and_then(|up| serde_json::to_string(&up).ok());
+        let first = first.map_or_else(String::new, |up| format!(" \"up\": {up},"));
+        let mut text = format!("{{ \"version\": 1, \"fps\": {},{first}\n  \"keys\": [", self.fps);
+        let mut separator = "\n    ";
+        for key in &self.keys {
+            let line = Key { up: key.up.filter(|_| key.up != up), ..key.clone() };
+            text.push_str(separator);
+            text.extend(serde_json::to_string(&line));
+            (up, separator) = (key.up, ",\n    ");
+        }
+        text + "\n  ] }\n"
     }
 
     /// Seconds from the first key to the last.
@@ -161,14 +183,20 @@ impl CameraPath {
     }
 
     fn camera_at(&self, t: f64, base: &Camera) -> Camera {
-        let fov = |key: &Key| DVec3::splat(key.fov.unwrap_or(f64::from(base.fov)));
-        Camera {
-            eye: self.at(t, |key| key.position.into()).as_vec3(),
-            look_at: self.at(t, |key| key.look_at.into()).as_vec3(),
-            up: self.up.map_or(base.up, |up| DVec3::from(up).as_vec3()),
-            // A spline may swing beyond its keys; a field of view may not leave its range.
-            fov: (self.at(t, fov).x as f32).clamp(0.01, 179.99),
-            ..*base
+        let after = self.keys.partition_point(|key| key.t <= t);
+        let key = &self.keys[after.saturating_sub(1)];
+        let base = Camera { up: key.up.map_or(base.up, |up| DVec3::from(up).as_vec3()), ..*base };
+        match self.keys.get(after).filter(|_| after > 0) {
+            Some(next) => {
+                let neighbours = [after.checked_sub(2).map(|i| &self.keys[i]), self.keys.get(after + 1)];
+                Stretch::between(neighbours, key, next, base.fov.into()).camera(t, &base)
+            }
+            None => Camera {
+                eye: DVec3::from(key.position).as_vec3(),
+                look_at: DVec3::from(key.look_at).as_vec3(),
+                fov: key.fov.map_or(base.fov, |fov| fov as f32).clamp(0.01, 179.99),
+                ..base
+            },
         }
     }
 
@@ -179,38 +207,6 @@ impl CameraPath {
             place: Place { file: file.to_owned(), line_column: None, pointer: String::new() },
             message: format!("the path has {count} frames; the camera stands still in those after"),
         })
-    }
-
-    /// The value of the spline through `value` of every key at time `t`.
-    fn at(&self, t: f64, value: impl Fn(&Key) -> DVec3) -> DVec3 {
-        let after = self.keys.partition_point(|key| key.t <= t);
-        let (Some(i), true) = (after.checked_sub(1), after < self.keys.len()) else {
-            return value(&self.keys[after.min(self.keys.len() - 1)]);
-        };
-        let (a, b) = (&self.keys[i], &self.keys[i + 1]);
-        let (duration, s) = (b.t - a.t, (t - a.t) / (b.t - a.t));
-        let (s2, s3) = (s * s, s * s * s);
-        value(a) * (2.0 * s3 - 3.0 * s2 + 1.0)
-            + self.tangent(i, &value) * (duration * (s3 - 2.0 * s2 + s))
-            + value(b) * (3.0 * s2 - 2.0 * s3)
-            + self.tangent(i + 1, &value) * (duration * (s3 - s2))
-    }
-
-    /// Change per second at key `i`: the slope of the parabola through it and its neighbours, at the ends the slope
-    /// of the only segment.
-    fn tangent(&self, i: usize, value: &impl Fn(&Key) -> DVec3) -> DVec3 {
-        let slope = |i: usize| {
-            let (a, b) = (&self.keys[i], &self.keys[i + 1]);
-            (value(b) - value(a)) / (b.t - a.t)
-        };
-        if i == 0 {
-            return slope(0);
-        }
-        if i + 1 == self.keys.len() {
-            return slope(i - 1);
-        }
-        let (before, after) = (self.keys[i].t - self.keys[i - 1].t, self.keys[i + 1].t - self.keys[i].t);
-        (slope(i - 1) * after + slope(i) * before) / (before + after)
     }
 }
 
@@ -283,6 +279,7 @@ mod tests {
             (r#"{ "version": 2, "keys": [] }"#.to_owned(), "/version"),
             (r#"{ "version": 1, "keys": [] }"#.to_owned(), "/keys"),
             (format!(r#"{{ "version": 1, "up": [0, 0, 0], "keys": [{}] }}"#, key("0")), "/up"),
+            (r#"{ "version": 1, "keys": [ { "t": 0, "position": [0, 0, 5], "look_at": [0, 0, 0], "up": [0, 0, 0] } ] }"#.to_owned(), "/keys/0/up"),
             (format!(r#"{{ "version": 1, "fps": 0, "keys": [{}] }}"#, key("0")), "/fps"),
             (format!(r#"{{ "version": 1, "keys": [{}, {}] }}"#, key("1"), key("1")), "/keys/1/t"),
             (format!(r#"{{ "version": 1, "keys": [{}] }}"#, key("1e39")), "/keys/0"),
@@ -295,5 +292,39 @@ mod tests {
         }
         assert!(matches!(CameraPath::load(Path::new("no/such.json")), Err(SceneError::Io { .. })));
         assert!(matches!(CameraPath::load(&std::env::temp_dir()), Err(SceneError::Invalid { .. })));
+    }
+    #[test]
+    fn up_holds_until_a_key_gives_another() {
+        let path = parse(
+            r#"{ "version": 1, "fps": 10, "keys": [
+            { "t": 0, "position": [0, 0, 5], "look_at": [0, 0, 0] },
+            { "t": 1, "position": [1, 0, 5], "look_at": [0, 0, 0], "up": [1, 2, 0] },
+            { "t": 2, "position": [2, 0, 5], "look_at": [0, 0, 0] },
+            { "t": 3, "position": [3, 0, 5], "look_at": [0, 0, 0], "up": [0, 0, 1] } ] }"#,
+        )
+        .expect("it is right");
+        let base = Camera { up: Vec3::Y, ..Camera::default() };
+        let tilted = Vec3::new(1.0, 2.0, 0.0);
+        for (frame, up) in [(0, Vec3::Y), (9, Vec3::Y), (10, tilted), (25, tilted), (30, Vec3::Z), (99, Vec3::Z)] {
+            assert_eq!(path.camera(frame, &base).up, up, "frame {frame}");
+        }
+        let text = path.to_json();
+        assert_eq!(text.matches("up").count(), 2, "where it changes: {text}");
+        assert_eq!(parse(&text).expect("it was written"), path);
+    }
+
+    #[test]
+    fn keys_of_any_numbers_can_be_read_back() {
+        let widest = -1_234_567_890_123_456.0;
+        let numbers = [widest, -0.000_012_345_679, f64::from(f32::MIN), f64::from(f32::MIN_POSITIVE)];
+        assert!(numbers.iter().all(|number| serde_json::json!(number).to_string().len() <= 19));
+        let (triple, fov) = ([widest; 3], Some(0.000_012_345_679));
+        // Ten days, in microseconds.
+        let key = Key { t: 864_000.123_456, position: triple, look_at: triple, fov, up: Some(triple) };
+        let other = Key { t: 864_000.123_457, up: Some([1.0; 3]), ..key.clone() };
+        let length =
+            |keys: &[&Key]| CameraPath { fps: 60.0, keys: keys.iter().copied().cloned().collect() }.to_json().len();
+        let line = length(&[&other, &key]) - length(&[&other]);
+        assert!(((READABLE_KEYS + 1) * line) as u64 <= MAX_BYTES, "{line} bytes a key");
     }
 }
