@@ -38,10 +38,12 @@ pub enum Row {
     HighlightEdge2 = 28,
     /// How much of what is seen is the surface's own, before textures.
     Coverage = 29,
+    /// Share of light from straight ahead that it reflects where it is no metal, metallic-roughness only.
+    DielectricF0 = 30,
 }
 
 /// Numbers a material has.
-pub const ROWS: usize = 30;
+pub const ROWS: usize = 31;
 
 /// One material, flattened.
 #[derive(Clone, Debug)]
@@ -149,6 +151,7 @@ impl FlatMaterial {
                 put(Row::Ambient, &ambient.to_array());
                 put(Row::Metallic, &[metallic]);
                 put(Row::Roughness, &[roughness]);
+                put(Row::DielectricF0, &[dielectric_f0(material.ior)]);
                 smooth = roughness < MIRROR_ROUGHNESS || material.metallic_roughness.is_some();
             }
         }
@@ -172,6 +175,13 @@ impl FlatMaterial {
             relieved: material.relief != Relief::NONE,
         }
     }
+}
+
+/// Share of light from straight ahead that a dielectric of this index of refraction reflects (`KHR_materials_ior`).
+fn dielectric_f0(ior: f32) -> f32 {
+    let ior = f64::from(ior);
+    let amplitude = (ior - 1.0) / (ior + 1.0);
+    (amplitude * amplitude) as f32
 }
 
 /// Square of the n·h at which (n·h)^shininess is 2^-24: less changes no colour of the highlight's order.
@@ -341,5 +351,12 @@ mod tests {
             assert!((left - 1.0).abs() < 1e-2, "{shininess}: {left}");
         }
         assert_eq!(highlight_edge2(0.0), 0.0);
+    }
+
+    #[test]
+    fn a_usual_dielectric_reflects_a_twenty_fifth_to_the_last_bit() {
+        assert_eq!(dielectric_f0(1.5).to_bits(), 0.04_f32.to_bits());
+        assert_eq!((dielectric_f0(1.0), dielectric_f0(3.0)), (0.0, 0.25));
+        assert_eq!([1e10, f32::MAX].map(dielectric_f0), [1.0; 2]);
     }
 }

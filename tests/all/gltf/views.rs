@@ -113,6 +113,26 @@ fn what_takes_no_light_and_what_glows_are_seen_under_any_light() {
 }
 
 #[test]
+fn the_index_of_refraction_says_what_opaque_surfaces_reflect() {
+    let sun = r#""extensions": { "KHR_lights_punctual": { "lights": [{ "type": "directional", "intensity": 3 }] } },
+        "nodes": [{ "mesh": 0 }, { "extensions": { "KHR_lights_punctual": { "light": 0 } } }]"#;
+    let light = |ior: &str| {
+        let black = r#""pbrMetallicRoughness": { "baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0, "roughnessFactor": 0.5 }"#;
+        let scene = wall(&format!("{{ {black} {ior} }}"), sun);
+        let mut film = Film::new(9, 9, Planes::default());
+        render_frame(&scene, &scene.cameras[0].camera, &Settings::exact(), &mut Scratch::new(), &mut film);
+        film.color(4, 4)[0]
+    };
+    let of = |ior: &str| light(&format!(r#", "extensions": {{ "KHR_materials_ior": {{ "ior": {ior} }} }}"#));
+    let usual = light("");
+    assert!(usual > 0.0 && of("1.5").to_bits() == usual.to_bits());
+    for (ior, f0) in [("1", 0.0), ("2.5", (1.5_f32 / 3.5).powi(2)), ("0", 1.0)] {
+        let ratio = of(ior) / usual;
+        assert!((ratio - f0 / 0.04).abs() < 1e-3 * (1.0 + ratio), "{ior}: {ratio}");
+    }
+}
+
+#[test]
 fn a_file_without_light_or_camera_is_seen_all_the_same() {
     let scene = wall(MATTE, r#""nodes": [{ "mesh": 0 }]"#);
     assert!(scene.headlight && scene.cameras.len() == 1);
