@@ -190,6 +190,10 @@ fn highlight_edge2(shininess: f32) -> f32 {
 }
 
 impl FlatMaterial {
+    fn put(&mut self, row: Row, values: &[f32]) {
+        self.rows[row as usize..row as usize + values.len()].copy_from_slice(values);
+    }
+
     /// Whether its light varies by more than its colour: what is interpolated would be missing something.
     pub fn is_uneven(&self) -> bool {
         let Maps { metallic_roughness, occlusion, .. } = &self.maps;
@@ -225,6 +229,8 @@ pub struct Tables {
     pub transparent_bodies: Vec<u32>,
     /// Whether anything flat mirrors.
     pub flat_mirrors: bool,
+    /// What the colours of unlit materials are multiplied by.
+    unlit_gain: f32,
 }
 
 impl Tables {
@@ -261,6 +267,23 @@ impl Tables {
             opaque,
             transparent_bodies,
             flat_mirrors,
+            unlit_gain: 1.0,
+        }
+    }
+
+    /// Multiplies the colours of the scene's unlit materials. What glows takes part where that makes it brighter: in the
+    /// dark it may outshine all else.
+    pub fn set_unlit_gain(&mut self, scene: &Scene, gain: f32) {
+        if self.unlit_gain == gain {
+            return;
+        }
+        self.unlit_gain = gain;
+        for (flat, material) in self.materials.iter_mut().zip(&scene.materials) {
+            let emission = (material.emission.factor * gain.max(1.0)).min(Vec3::splat(f32::MAX));
+            flat.put(Row::Emission, &emission.to_array());
+            if material.unlit {
+                flat.put(Row::Color, &(material.color.factor * gain).to_array());
+            }
         }
     }
 
