@@ -305,7 +305,8 @@ impl Scenes {
                         return Some(news);
                     }
                 }
-                Note::Saw(Sight::Blind(reason)) => self.blind = Some(reason),
+                Note::Saw(Sight::Blind(what)) => self.blind = Some(what),
+                Note::Saw(Sight::Watchful) => self.blind = None,
                 Note::Saw(Sight::Changed) => match &self.pending {
                     Some(pending) if pending.errand != Errand::Reload => self.outdated = true,
                     _ => self.reload(),
