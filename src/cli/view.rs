@@ -151,7 +151,7 @@ fn failure(failed: Failed) -> Failure {
 /// What the window would have shown, to be rendered.
 fn stage_of(arrival: Arrival, options: &Options) -> Stage {
     let (width, height) = arrival.size.unwrap_or((DEFAULT_SIZE.width, DEFAULT_SIZE.height));
-    let loaded = Loaded { scene: arrival.scene, total_ms: 0.0 };
+    let loaded = Loaded { scene: arrival.scene, total_ms: arrival.load_ms };
     let size = Size { width, height };
     let stage = Stage { loaded, camera: arrival.camera, size, settings: Settings::default() };
     stage.with_settings(&options.settings)
