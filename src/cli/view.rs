@@ -10,7 +10,7 @@ use super::values::Size;
 use super::{Failure, render, stdout};
 use clap::ArgMatches;
 use raywalk::app::config::{Config, Store, usual_settings};
-use raywalk::app::scenes::{Arrival, Failed, Load, Outcome};
+use raywalk::app::scenes::{Arrival, Failed, Load, Outcome, place_of};
 use raywalk::app::{self, AppError, AppOptions, Opening, screenshot, terminal};
 use raywalk::measure::Record;
 use raywalk::picture::{NumberedName, WriteOptions};
@@ -131,6 +131,7 @@ fn load(options: &Options) -> Result<Load, Failure> {
         Ok(Arrival {
             camera: frames.camera(frames.range.start, &stage.camera)?,
             scene: stage.loaded.scene,
+            place: options.reading.scene.as_deref().map(place_of),
             file: options.reading.scene,
             files: files.files(),
             load_ms: stage.loaded.total_ms,

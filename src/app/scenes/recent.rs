@@ -14,19 +14,14 @@ pub struct RecentFiles {
 }
 
 impl RecentFiles {
-    /// Puts a file first that was opened. One whose name is no text is not kept: it could not be written down.
-    pub fn opened(&mut self, file: &Path) {
-        let Ok(file) = std::path::absolute(file) else { return };
-        self.forget(&file);
-        if file.to_str().is_some() {
-            self.files.insert(0, file);
+    /// Puts a file first that was opened, which is given by its one path. One whose name is no text is not kept: it could
+    /// not be written down.
+    pub fn opened(&mut self, place: &Path) {
+        self.files.retain(|known| known != place);
+        if place.to_str().is_some() {
+            self.files.insert(0, place.to_owned());
             self.files.truncate(MOST);
         }
-    }
-
-    /// Strikes a file out.
-    pub fn forget(&mut self, file: &Path) {
-        self.files.retain(|known| known != file);
     }
 
     /// The files, the newest first.
@@ -51,8 +46,6 @@ mod tests {
         }
         assert_eq!(recent.files().len(), MOST);
         assert_eq!(recent.files()[0], Path::new("/29.obj"));
-        recent.forget(Path::new("/29.obj"));
-        assert_eq!(recent.files()[0], Path::new("/28.obj"));
     }
 
     #[test]

@@ -191,6 +191,19 @@ fn warnings_stay_until_they_were_read_and_come_back_when_they_are_others() {
 }
 
 #[test]
+fn a_file_is_one_however_its_path_is_spelled() {
+    let folder = Folder::new();
+    let file = folder.write("ball.json", ball("[0.5, 0, 0]"));
+    std::fs::create_dir(folder.path().join("part")).expect("made");
+    let (mut scenes, woken) = scenes();
+    for spelled in ["part/../ball.json", "ball.json"] {
+        scenes.open(&folder.path().join(spelled));
+        assert_eq!(opened(&mut scenes, &woken).place.as_ref(), Some(&file));
+        assert_eq!((scenes.place(), scenes.recent().files()), (Some(&*file), &[file.clone()][..]));
+    }
+}
+
+#[test]
 fn a_folder_that_is_replaced_is_still_watched() {
     let folder = Folder::new();
     let part = folder.path().join("part");
