@@ -7,20 +7,20 @@ use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The bookmarks of scenes by their files; those of the built-in scene have no name.
+/// The bookmarks of scenes by the one path of their files; those of the built-in scene have no name.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct BookmarkShelf(BTreeMap<String, Bookmarks>);
 
 impl BookmarkShelf {
-    /// Those of the scene in `file`; `None` is the built-in one.
-    pub fn of(&self, file: Option<&Path>) -> Bookmarks {
-        self.0.get(&name(file)).cloned().unwrap_or_default()
+    /// Those of the scene at `place`; `None` is the built-in one.
+    pub fn of(&self, place: Option<&Path>) -> Bookmarks {
+        self.0.get(&name(place)).cloned().unwrap_or_default()
     }
 
-    /// Those of the scene in `file`, to be added to.
-    pub fn of_mut(&mut self, file: Option<&Path>) -> &mut Bookmarks {
-        self.0.entry(name(file)).or_default()
+    /// Those of the scene at `place`, to be added to.
+    pub fn of_mut(&mut self, place: Option<&Path>) -> &mut Bookmarks {
+        self.0.entry(name(place)).or_default()
     }
 
     /// Out of a configuration: whatever of it are bookmarks.
@@ -52,9 +52,8 @@ impl BookmarkShelf {
     }
 }
 
-fn name(file: Option<&Path>) -> String {
-    let file = file.map(|file| std::path::absolute(file).unwrap_or_else(|_| file.to_owned()));
-    file.unwrap_or_default().to_string_lossy().into_owned()
+fn name(place: Option<&Path>) -> String {
+    place.map(Path::to_string_lossy).unwrap_or_default().into_owned()
 }
 
 /// Views by number, 1 to 9.

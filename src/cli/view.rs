@@ -10,7 +10,7 @@ use super::values::Size;
 use super::{Failure, render, stdout};
 use clap::ArgMatches;
 use raywalk::app::config::{Config, Store, usual_settings};
-use raywalk::app::scenes::{Arrival, Failed, Load, Outcome};
+use raywalk::app::scenes::{Arrival, Failed, Load, Outcome, place_of};
 use raywalk::app::{self, AppError, AppOptions, Opening, screenshot, terminal};
 use raywalk::measure::Record;
 use raywalk::picture::{NumberedName, WriteOptions};
@@ -132,6 +132,7 @@ fn load(options: &Options) -> Result<Load, Failure> {
         Ok(Arrival {
             camera: frames.camera(frames.range.start, &stage.camera)?,
             scene: stage.loaded.scene,
+            place: options.reading.scene.as_deref().map(place_of),
             file: options.reading.scene,
             files: files.files(),
             load_ms: stage.loaded.total_ms,
@@ -152,7 +153,7 @@ fn failure(failed: Failed) -> Failure {
 /// What the window would have shown, to be rendered.
 fn stage_of(arrival: Arrival, options: &Options) -> Stage {
     let (width, height) = arrival.size.unwrap_or((DEFAULT_SIZE.width, DEFAULT_SIZE.height));
-    let loaded = Loaded { scene: arrival.scene, total_ms: 0.0 };
+    let loaded = Loaded { scene: arrival.scene, total_ms: arrival.load_ms };
     let size = Size { width, height };
     let stage = Stage { loaded, camera: arrival.camera, size, settings: Settings::default() };
     stage.with_settings(&options.settings)

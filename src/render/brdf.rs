@@ -75,7 +75,7 @@ impl<S: Simd> Reflectance<S> {
         }
         let mut metallic_roughness = None;
         if some_metallic {
-            metallic_roughness = Some(MetallicRoughness::new(simd, skin, opacity));
+            metallic_roughness = Some(MetallicRoughness::new(simd, materials, skin, opacity));
         }
         Self { phong, metallic_roughness }
     }
@@ -131,7 +131,7 @@ impl<S: Simd> MetallicRoughness<S> {
     /// All that does not depend on the light. Left to the loop over lights, it would be hoisted out of it, and computed
     /// for every packet of every scene.
     #[inline(always)]
-    fn new(simd: S, skin: &Skin<S>, opacity: V3<S::f32s>) -> Self {
+    fn new(simd: S, materials: &impl Materials<S>, skin: &Skin<S>, opacity: V3<S::f32s>) -> Self {
         let Skin { color, metallic, roughness, .. } = *skin;
         let one = S::f32s::splat(simd, 1.0);
         let alpha = roughness * roughness;
@@ -139,7 +139,7 @@ impl<S: Simd> MetallicRoughness<S> {
             own: roughness.simd_ge(S::f32s::splat(simd, 0.0)),
             // A perfect mirror's highlight of a point light has no width: keep it visible and finite.
             alpha2: (alpha * alpha).max(1e-6),
-            f0: skin.f0(simd),
+            f0: skin.f0(simd, materials),
             diffuse: opacity * color.scale((one - metallic) * std::f32::consts::FRAC_1_PI),
         }
     }

@@ -209,6 +209,7 @@ pub fn render_frame(
     if tables.generation != Some(scene.generation) {
         *tables = Tables::new(scene);
     }
+    tables.set_unlit_gain(scene, scene.unlit_gain(settings.exposure));
     if pool.as_ref().is_none_or(|p| p.asked != settings.threads) {
         *pool = Some(Pool::new(settings.threads));
     }

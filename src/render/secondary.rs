@@ -266,7 +266,7 @@ fn mirror_share<S: Simd>(
     if !(frame.plan.metallic_roughness && materials.any(|material| material.metallic_roughness)) {
         return reflectivity;
     }
-    let fresnel = brdf::schlick(simd, skin.f0(simd), cosine);
+    let fresnel = brdf::schlick(simd, skin.f0(simd, materials), cosine);
     V3::select(materials.lanes(simd, |material| material.metallic_roughness), fresnel, reflectivity)
 }
 

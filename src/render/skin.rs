@@ -102,9 +102,10 @@ impl<S: Simd> Skin<S> {
 
     /// Share of light from straight ahead that a metallic-roughness surface reflects.
     #[inline(always)]
-    pub fn f0(&self, simd: S) -> V3<S::f32s> {
+    pub fn f0(&self, simd: S, materials: &impl Materials<S>) -> V3<S::f32s> {
         let one = S::f32s::splat(simd, 1.0);
-        V3::all((one - self.metallic) * 0.04) + self.color.scale(self.metallic)
+        let dielectric = materials.row(simd, Row::DielectricF0 as usize);
+        V3::all((one - self.metallic) * dielectric) + self.color.scale(self.metallic)
     }
 
     /// In another colour.

@@ -38,10 +38,12 @@ pub enum Row {
     HighlightEdge2 = 28,
     /// How much of what is seen is the surface's own, before textures.
     Coverage = 29,
+    /// Share of light from straight ahead that it reflects where it is no metal, metallic-roughness only.
+    DielectricF0 = 30,
 }
 
 /// Numbers a material has.
-pub const ROWS: usize = 30;
+pub const ROWS: usize = 31;
 
 /// One material, flattened.
 #[derive(Clone, Debug)]
@@ -149,6 +151,7 @@ impl FlatMaterial {
                 put(Row::Ambient, &ambient.to_array());
                 put(Row::Metallic, &[metallic]);
                 put(Row::Roughness, &[roughness]);
+                put(Row::DielectricF0, &[dielectric_f0(material.ior)]);
                 smooth = roughness < MIRROR_ROUGHNESS || material.metallic_roughness.is_some();
             }
         }
@@ -174,12 +177,23 @@ impl FlatMaterial {
     }
 }
 
+/// Share of light from straight ahead that a dielectric of this index of refraction reflects (`KHR_materials_ior`).
+fn dielectric_f0(ior: f32) -> f32 {
+    let ior = f64::from(ior);
+    let amplitude = (ior - 1.0) / (ior + 1.0);
+    (amplitude * amplitude) as f32
+}
+
 /// Square of the n·h at which (n·h)^shininess is 2^-24: less changes no colour of the highlight's order.
 fn highlight_edge2(shininess: f32) -> f32 {
     libm::exp2(-48.0 / f64::from(shininess).abs()) as f32
 }
 
 impl FlatMaterial {
+    fn put(&mut self, row: Row, values: &[f32]) {
+        self.rows[row as usize..row as usize + values.len()].copy_from_slice(values);
+    }
+
     /// Whether its light varies by more than its colour: what is interpolated would be missing something.
     pub fn is_uneven(&self) -> bool {
         let Maps { metallic_roughness, occlusion, .. } = &self.maps;
@@ -215,6 +229,8 @@ pub struct Tables {
     pub transparent_bodies: Vec<u32>,
     /// Whether anything flat mirrors.
     pub flat_mirrors: bool,
+    /// What the colours of unlit materials are multiplied by.
+    unlit_gain: f32,
 }
 
 impl Tables {
@@ -251,6 +267,23 @@ impl Tables {
             opaque,
             transparent_bodies,
             flat_mirrors,
+            unlit_gain: 1.0,
+        }
+    }
+
+    /// Multiplies the colours of the scene's unlit materials. What glows takes part where that makes it brighter: in the
+    /// dark it may outshine all else.
+    pub fn set_unlit_gain(&mut self, scene: &Scene, gain: f32) {
+        if self.unlit_gain == gain {
+            return;
+        }
+        self.unlit_gain = gain;
+        for (flat, material) in self.materials.iter_mut().zip(&scene.materials) {
+            let emission = (material.emission.factor * gain.max(1.0)).min(Vec3::splat(f32::MAX));
+            flat.put(Row::Emission, &emission.to_array());
+            if material.unlit {
+                flat.put(Row::Color, &(material.color.factor * gain).to_array());
+            }
         }
     }
 
@@ -341,5 +374,12 @@ mod tests {
             assert!((left - 1.0).abs() < 1e-2, "{shininess}: {left}");
         }
         assert_eq!(highlight_edge2(0.0), 0.0);
+    }
+
+    #[test]
+    fn a_usual_dielectric_reflects_a_twenty_fifth_to_the_last_bit() {
+        assert_eq!(dielectric_f0(1.5).to_bits(), 0.04_f32.to_bits());
+        assert_eq!((dielectric_f0(1.0), dielectric_f0(3.0)), (0.0, 0.25));
+        assert_eq!([1e10, f32::MAX].map(dielectric_f0), [1.0; 2]);
     }
 }

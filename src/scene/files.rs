@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, Read};
 use std::mem;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// What a load says that was ended early, wherever it was: [`SceneError::Cancelled`](super::SceneError::Cancelled) in the
 /// end.
@@ -112,12 +112,14 @@ impl Files {
         }
     }
 
-    /// Notes what was looked for in vain, if it may yet come to be there.
+    /// Notes what was looked for in vain, if it may yet come to be there; so may the folder that it would be in.
     fn missed(&self, scene: &Path, relative: &Path) {
         let path = self.folder.join(relative);
-        let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else { return };
-        if let Some(folder) = folder.canonicalize().ok().filter(|folder| folder.starts_with(scene)) {
-            self.progress.saw(&folder.join(name), None);
+        let there = path.ancestors().skip(1).find_map(|folder| Some((folder, folder.canonicalize().ok()?)));
+        let Some((folder, place)) = there.filter(|(_, place)| place.starts_with(scene)) else { return };
+        let Ok(rest) = path.strip_prefix(folder) else { return };
+        if rest.components().all(|part| matches!(part, Component::Normal(_))) {
+            self.progress.saw(&place.join(rest), None);
         }
     }
 

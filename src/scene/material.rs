@@ -150,7 +150,7 @@ pub struct Material<T = u32> {
     pub transparency: Vec3,
     /// Multiplies the transparency (red).
     pub transmission: Option<Lookup<T>>,
-    /// Index of refraction inside a body of this material.
+    /// Index of refraction inside a body of this material; of metallic-roughness ones, also what dielectrics reflect.
     pub ior: f32,
     /// Whether reflection and refraction share the light by Fresnel's equations.
     pub fresnel: bool,

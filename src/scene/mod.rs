@@ -142,6 +142,18 @@ impl Scene {
         }
     }
 
+    /// What the colour of unlit surfaces is to be multiplied by, so that under `exposure` they are seen as the file has
+    /// them.
+    ///
+    /// That is so where the file leaves exposure to the viewer: its lights may then be in any unit, and what is as bright
+    /// whatever the lights is in none.
+    pub fn unlit_gain(&self, exposure: Exposure) -> f32 {
+        match self.render.exposure {
+            Exposure::Stops(_) => 1.0,
+            Exposure::Auto | Exposure::Scene => libm::exp2f(-self.stops(exposure)),
+        }
+    }
+
     /// The stops that `exposure` means for this scene.
     pub fn stops(&self, exposure: Exposure) -> f32 {
         match exposure {

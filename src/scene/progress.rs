@@ -1,5 +1,6 @@
 //! A load as other threads see it: how far it has come, which files it looked at, and the way to end it early.
 
+use std::collections::BTreeMap;
 use std::fs::Metadata;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -67,7 +68,8 @@ struct Shared {
 #[derive(Debug, Default)]
 struct State {
     step: Step,
-    files: Vec<SeenFile>,
+    /// By where they are: many things may name one.
+    files: BTreeMap<PathBuf, Option<Stamp>>,
 }
 
 impl Progress {
@@ -88,7 +90,8 @@ impl Progress {
 
     /// The files it looked at so far, those that it did not find among them.
     pub fn files(&self) -> Vec<SeenFile> {
-        self.state().files.clone()
+        let files = self.state().files.clone();
+        files.into_iter().map(|(path, stamp)| SeenFile { path, stamp }).collect()
     }
 
     /// Begins something that has `of` parts, 0 where that is not known.
@@ -101,9 +104,13 @@ impl Progress {
         self.state().step.done += 1;
     }
 
-    /// Notes that it looked at a file.
+    /// Notes that it looked at a file. The version that was seen last counts.
     pub(super) fn saw(&self, path: &Path, stamp: Option<Stamp>) {
-        self.state().files.push(SeenFile { path: path.to_owned(), stamp });
+        let files = &mut self.state().files;
+        match files.get_mut(path) {
+            Some(known) => *known = stamp,
+            None => drop(files.insert(path.to_owned(), stamp)),
+        }
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -125,5 +132,21 @@ mod tests {
             progress.clone().advance();
         }
         assert_eq!(progress.step().to_string(), "decoding textures: 3 of 15");
+    }
+
+    #[test]
+    fn a_file_is_noted_once_however_often_it_is_looked_for() {
+        let progress = Progress::default();
+        let seen = Some(Stamp { modified: None, bytes: 1 });
+        for _ in 0..3 {
+            progress.saw(Path::new("wood.png"), None);
+        }
+        progress.saw(Path::new("room.gltf"), seen);
+        progress.saw(Path::new("wood.png"), seen);
+        let files = progress.files();
+        assert_eq!(
+            files.iter().map(|file| (file.path.to_str(), file.stamp)).collect::<Vec<_>>(),
+            [(Some("room.gltf"), seen), (Some("wood.png"), seen)]
+        );
     }
 }

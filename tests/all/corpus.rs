@@ -116,20 +116,54 @@ fn every_bad_file_gives_a_picture_or_one_clear_error_in_time() {
     }
 }
 
-/// The program itself on every bad file, in a gibibyte of memory: it ends by itself, with one line if it fails.
+/// The program itself on a file, in a gibibyte of memory: it ends by itself, with one line if it fails.
+#[cfg(target_os = "linux")]
+fn told_within_a_gibibyte(file: &Path) -> String {
+    let script = "ulimit -v 1048576; exec \"$0\" render --quiet --size 16x16 --threads 1 --stats - \"$1\"";
+    let mut shell = std::process::Command::new("sh");
+    let output = shell.args(["-c", script, env!("CARGO_BIN_EXE_raywalk")]).arg(file).output().unwrap();
+    let (name, told) = (file.display(), String::from_utf8_lossy(&output.stderr).into_owned());
+    match output.status.code() {
+        Some(0) => assert!(told.is_empty(), "{name}: {told}"),
+        Some(1) => assert!(told.starts_with("error: ") && told.trim_end().lines().count() == 1, "{name}: {told}"),
+        code => panic!("{name} ends with {code:?}: {told}"),
+    }
+    told
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn the_program_survives_every_bad_file_within_a_gibibyte() {
-    use std::process::Command;
     for file in files("bad") {
-        let script = "ulimit -v 1048576; exec \"$0\" render --quiet --size 16x16 --threads 1 --stats - \"$1\"";
-        let mut shell = Command::new("sh");
-        let output = shell.args(["-c", script, env!("CARGO_BIN_EXE_raywalk")]).arg(&file).output().unwrap();
-        let (name, told) = (file.display(), String::from_utf8_lossy(&output.stderr).into_owned());
-        match output.status.code() {
-            Some(0) => assert!(told.is_empty(), "{name}: {told}"),
-            Some(1) => assert!(told.starts_with("error: ") && told.trim_end().lines().count() == 1, "{name}: {told}"),
-            code => panic!("{name} ends with {code:?}: {told}"),
-        }
+        told_within_a_gibibyte(&file);
     }
+}
+
+/// Files of a few kilobytes that ask for many vertices, which they do not hold or name again and again.
+#[cfg(target_os = "linux")]
+#[test]
+fn few_words_that_ask_for_many_vertices_are_survived_within_a_gibibyte() {
+    let folder = crate::temporary::Folder::new();
+    let gltf = |accessors: &[String], primitives: &[String], rest: &str| {
+        format!(
+            r#"{{ "asset": {{ "version": "2.0" }}, "accessors": [{}], "meshes": [{{ "primitives": [{}] }}],
+            "nodes": [{{ "mesh": 0 }}], "scenes": [{{ "nodes": [0] }}], "scene": 0 {rest} }}"#,
+            accessors.join(","),
+            primitives.join(",")
+        )
+    };
+    let zeros = |_| r#"{ "componentType": 5126, "count": 4194304, "type": "VEC3" }"#.to_owned();
+    let zeros: Vec<String> = (0..30).map(zeros).collect();
+    let each = |i| format!(r#"{{ "attributes": {{ "POSITION": {i} }} }}"#);
+    let of_each: Vec<String> = (0..30).map(each).collect();
+    let told = told_within_a_gibibyte(&folder.write("zeros.gltf", gltf(&zeros, &of_each, "")));
+    assert!(told.contains("without a bufferView"), "{told}");
+
+    let bytes = r#", "buffers": [{ "uri": "zeros.bin", "byteLength": 6291456 }],
+        "bufferViews": [{ "buffer": 0, "byteLength": 6291456 }]"#;
+    folder.write("zeros.bin", vec![0; 6 << 20]);
+    let one = r#"{ "bufferView": 0, "componentType": 5120, "count": 2097152, "type": "VEC3" }"#;
+    let again: Vec<String> = (0..60).map(|_| each(0)).collect();
+    let told = told_within_a_gibibyte(&folder.write("again.gltf", gltf(&[one.to_owned()], &again, bytes)));
+    assert!(told.is_empty() || told.contains("there is no memory for"), "{told}");
 }

@@ -124,8 +124,8 @@ pub fn section(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
             changes.push(Change::Scenes(Wish::Reload));
         }
     });
-    if let Some(reason) = view.scenes.blind {
-        ui.label(RichText::new(format!("changes on disk are not noticed: {reason}")).color(theme::WARNING));
+    if let Some(told) = view.scenes.blind {
+        ui.label(RichText::new(told).color(theme::WARNING));
     }
     if !view.scenes.recent.is_empty() {
         ui.label(RichText::new("opened before").color(theme::WEAK));

@@ -1,6 +1,7 @@
 //! What is meant by a path that was dropped or chosen: a scene file, or the one in a folder.
 
 use crate::scene::Format;
+use crate::scene::path::CameraPath;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -38,6 +39,11 @@ pub enum NoScene {
     },
 }
 
+/// Whether a file is a walk through a scene, such as those that are recorded beside it.
+fn is_camera_path(file: &Path) -> bool {
+    file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) && CameraPath::load(file).is_ok()
+}
+
 /// The scene file that `path` is, or that is the only one in it. What is no folder is left for the loader to judge.
 ///
 /// # Errors
@@ -51,7 +57,8 @@ pub fn scene_file(path: &Path) -> Result<PathBuf, NoScene> {
     let mut names = Vec::new();
     for entry in path.read_dir().map_err(unreadable)? {
         let entry = entry.map_err(unreadable)?;
-        if Format::of(Path::new(&entry.file_name())).is_some() && entry.path().is_file() {
+        let file = entry.path();
+        if Format::of(Path::new(&entry.file_name())).is_some() && file.is_file() && !is_camera_path(&file) {
             names.push(entry.file_name());
         }
     }
@@ -86,6 +93,9 @@ mod tests {
         assert!(said(folder.path()).contains("no scene file") && said(folder.path()).contains(".gltf"));
         folder.write("notes.txt", "");
         folder.write("room.glb", "");
+        assert_eq!(scene_file(folder.path()).expect("one"), folder.path().join("room.glb"));
+        let key = r#"{ "t": 0, "position": [0, 0, 0], "look_at": [0, 0, 1] }"#;
+        folder.write("raywalk-path-0001.json", format!(r#"{{ "version": 1, "fps": 60, "keys": [{key}] }}"#));
         assert_eq!(scene_file(folder.path()).expect("one"), folder.path().join("room.glb"));
         folder.write("Hall.OBJ", "");
         let several = said(folder.path());

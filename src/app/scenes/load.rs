@@ -5,7 +5,7 @@ use crate::scene::progress::SeenFile;
 use crate::scene::{Camera, Progress, Scene};
 use std::error::Error;
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -21,12 +21,19 @@ pub struct Arrival {
     pub camera: Camera,
     /// Its file; `None` for a scene that is not a file.
     pub file: Option<PathBuf>,
+    /// The one path of its file, however that was spelled or linked to.
+    pub place: Option<PathBuf>,
     /// The files that the load looked at.
     pub files: Vec<SeenFile>,
     /// Milliseconds it took to read and build.
     pub load_ms: f64,
     /// Size of the window's inside that it asks for, in physical pixels.
     pub size: Option<(u32, u32)>,
+}
+
+/// The one path of a file, as [`Arrival::place`] has it. It asks the disk, which may take long.
+pub fn place_of(file: &Path) -> PathBuf {
+    file.canonicalize().or_else(|_| std::path::absolute(file)).unwrap_or_else(|_| file.to_owned())
 }
 
 /// Why there is no scene; its text is one line.
@@ -145,6 +152,7 @@ mod tests {
             camera: scene.cameras[0].camera,
             scene: Arc::new(scene),
             file: None,
+            place: None,
             files: Vec::new(),
             load_ms: 0.0,
             size: None,

@@ -22,7 +22,7 @@ mod temporary;
 mod trials;
 mod watch;
 
-pub use load::{Arrival, Failed, Load, Outcome};
+pub use load::{Arrival, Failed, Load, Outcome, place_of};
 pub use recent::RecentFiles;
 pub use report::{Failure, Loading, Report};
 
@@ -112,6 +112,8 @@ pub struct Scenes {
     options: LoadOptions,
     /// The file of the scene that is shown.
     file: Option<PathBuf>,
+    /// The one path of that file.
+    place: Option<PathBuf>,
     pending: Option<Pending>,
     /// The scene that is shown has changed on disk while another was loaded.
     outdated: bool,
@@ -141,6 +143,7 @@ impl Scenes {
         Self {
             options,
             file: None,
+            place: None,
             pending: None,
             outdated: false,
             failure: None,
@@ -171,8 +174,9 @@ impl Scenes {
         let is_odd = !arrival.scene.warnings.is_empty() && arrival.scene.warnings != self.dismissed;
         self.odd = is_odd.then(|| Arc::clone(&arrival.scene));
         self.file.clone_from(&arrival.file);
-        if let Some(file) = &arrival.file {
-            self.recent.opened(file);
+        self.place.clone_from(&arrival.place);
+        if let Some(place) = &arrival.place {
+            self.recent.opened(place);
         }
         self.watch.files(arrival.files.clone());
     }
@@ -259,6 +263,11 @@ impl Scenes {
         self.file.as_deref()
     }
 
+    /// The one path of that file.
+    pub fn place(&self) -> Option<&Path> {
+        self.place.as_deref()
+    }
+
     /// The files that were opened last.
     pub fn recent(&self) -> &RecentFiles {
         &self.recent
@@ -305,7 +314,8 @@ impl Scenes {
                         return Some(news);
                     }
                 }
-                Note::Saw(Sight::Blind(reason)) => self.blind = Some(reason),
+                Note::Saw(Sight::Blind(what)) => self.blind = Some(what),
+                Note::Saw(Sight::Watchful) => self.blind = None,
                 Note::Saw(Sight::Changed) => match &self.pending {
                     Some(pending) if pending.errand != Errand::Reload => self.outdated = true,
                     _ => self.reload(),
@@ -395,6 +405,7 @@ fn load_file(path: &Path, options: &LoadOptions) -> Outcome {
     Ok(Arrival {
         camera: scene.cameras[0].camera,
         scene: Arc::new(scene),
+        place: Some(place_of(&file)),
         file: Some(file),
         files: options.progress.files(),
         load_ms: 1e3 * began.elapsed().as_secs_f64(),

@@ -16,19 +16,14 @@ pub struct RecentFiles {
 }
 
 impl RecentFiles {
-    /// Puts a file first that was opened. One whose name is no text is not kept: it could not be written down.
-    pub fn opened(&mut self, file: &Path) {
-        let Ok(file) = std::path::absolute(file) else { return };
-        self.forget(&file);
-        if file.to_str().is_some() {
-            self.files.insert(0, file);
+    /// Puts a file first that was opened, which is given by its one path. One whose name is no text is not kept: it could
+    /// not be written down.
+    pub fn opened(&mut self, place: &Path) {
+        self.files.retain(|known| known != place);
+        if place.to_str().is_some() {
+            self.files.insert(0, place.to_owned());
             self.files.truncate(MOST);
         }
-    }
-
-    /// Strikes a file out.
-    pub fn forget(&mut self, file: &Path) {
-        self.files.retain(|known| known != file);
     }
 
     /// Out of a configuration: whatever of a list are names of files.
@@ -53,13 +48,9 @@ impl RecentFiles {
         Self { files }
     }
 
-    /// Takes over what was opened and struck out from `before` to `after`.
+    /// Takes over what was opened from `before` to `after`.
     pub fn take_changes(&mut self, before: &Self, after: &Self) {
         let (before, after) = (&before.files, &after.files);
-        // A full list lost its last ones to new ones: nobody struck them out.
-        if after.len() < MOST {
-            before.iter().filter(|file| !after.contains(file)).for_each(|file| self.forget(file));
-        }
         // What was opened stands before all that is still in its old order.
         let is_as_before = |rest: &[PathBuf]| {
             let mut known = before.iter();
@@ -91,8 +82,6 @@ mod tests {
         }
         assert_eq!(recent.files().len(), MOST);
         assert_eq!(recent.files()[0], Path::new("/29.obj"));
-        recent.forget(Path::new("/29.obj"));
-        assert_eq!(recent.files()[0], Path::new("/28.obj"));
     }
 
     #[test]
@@ -106,15 +95,13 @@ mod tests {
     }
 
     #[test]
-    fn another_windows_list_takes_over_what_was_opened_and_struck_out() {
+    fn another_windows_list_takes_over_what_was_opened() {
         let list = |names: &[&str]| RecentFiles { files: names.iter().map(PathBuf::from).collect() };
         let before = list(&["/a", "/b", "/c"]);
         for (after, theirs, expected) in [
             (&["/a", "/b", "/c"][..], &["/x", "/a"][..], &["/x", "/a"][..]),
             (&["/n", "/a", "/b", "/c"], &["/x", "/a", "/b", "/c"], &["/n", "/x", "/a", "/b", "/c"]),
             (&["/c", "/a", "/b"], &["/x", "/a", "/b", "/c"], &["/c", "/x", "/a", "/b"]),
-            (&["/a", "/c"], &["/x", "/a", "/b", "/c"], &["/x", "/a", "/c"]),
-            (&[], &["/x", "/b"], &["/x"]),
         ] {
             let mut merged = list(theirs);
             merged.take_changes(&before, &list(after));

@@ -54,6 +54,6 @@ pub struct Report<'a> {
     pub hint: Option<&'static str>,
     /// The files that were opened last.
     pub recent: &'a [PathBuf],
-    /// Why files are not watched, if they are not.
+    /// Which files are not watched and why, in words, if some are not.
     pub blind: Option<&'a str>,
 }

@@ -189,3 +189,38 @@ fn warnings_stay_until_they_were_read_and_come_back_when_they_are_others() {
     reloaded(&mut scenes, &woken);
     assert!(scenes.report(Instant::now()).odd.is_some());
 }
+
+#[test]
+fn a_file_is_one_however_its_path_is_spelled() {
+    let folder = Folder::new();
+    let file = folder.write("ball.json", ball("[0.5, 0, 0]"));
+    std::fs::create_dir(folder.path().join("part")).expect("made");
+    let (mut scenes, woken) = scenes();
+    for spelled in ["part/../ball.json", "ball.json"] {
+        scenes.open(&folder.path().join(spelled));
+        assert_eq!(opened(&mut scenes, &woken).place.as_ref(), Some(&file));
+        assert_eq!((scenes.place(), scenes.recent().files()), (Some(&*file), &[file.clone()][..]));
+    }
+}
+
+#[test]
+fn a_folder_that_is_replaced_is_still_watched() {
+    let folder = Folder::new();
+    let part = folder.path().join("part");
+    let fill = |red: &str| {
+        std::fs::create_dir(&part).expect("made");
+        std::fs::write(part.join("ball.json"), ball(red)).expect("written");
+    };
+    fill("[0.5, 0, 0]");
+    let (mut scenes, woken) = scenes();
+    scenes.open(&part);
+    opened(&mut scenes, &woken);
+    for _ in 0..2 {
+        std::fs::remove_dir_all(&part).expect("removed");
+        assert!(wait(&mut scenes, &woken, |scenes| scenes.failure.is_some()).is_none());
+        fill("[0.25, 0, 0]");
+        assert_eq!(red(&reloaded(&mut scenes, &woken)), 0.25);
+        std::fs::write(part.join("ball.json"), ball("[0.125, 0, 0]")).expect("edited");
+        assert_eq!(red(&reloaded(&mut scenes, &woken)), 0.125);
+    }
+}

@@ -44,10 +44,10 @@ impl Session {
             Command::ReduceUi => self.scale_ui(self.ui_scale / UI_STEP),
             Command::ResetUi => self.scale_ui(1.0),
             Command::StoreBookmark(number) => {
-                self.keeper.config.bookmarks.of_mut(self.scenes.file()).store(number, self.walker.camera());
+                self.keeper.config.bookmarks.of_mut(self.scenes.place()).store(number, self.walker.camera());
                 self.notices.tell(now, format!("Bookmark {number} set: key {number} comes back here"));
             }
-            Command::GoToBookmark(number) => match self.keeper.config.bookmarks.of(self.scenes.file()).get(number) {
+            Command::GoToBookmark(number) => match self.keeper.config.bookmarks.of(self.scenes.place()).get(number) {
                 Some(camera) => self.go_to(camera),
                 None => self.notices.warn(now, format!("There is no bookmark {number}: Ctrl+{number} sets it")),
             },

@@ -265,24 +265,15 @@ impl SceneBuilder {
 
     /// The stops that show white at half of full brightness where the scene is as bright as usual.
     ///
-    /// Where the scene asks to be exposed so, its lights may be in any unit: what is as bright whatever the lights (its
-    /// ambient light, what glows, what takes no light) is put in proportion to them.
+    /// Where the scene asks to be exposed so, its lights may be in any unit: its ambient light is put in proportion to
+    /// them.
     fn expose(&mut self, probe: &mut Probe) -> f32 {
         let irradiance = brightness::usual_irradiance(probe, &self.cameras[0].camera, &self.lights).unwrap_or(1.0);
         let physical = self.materials.iter().any(|m| matches!(m.model, Model::MetallicRoughness { .. }));
         let white = if physical { irradiance / PI } else { irradiance };
         let stops = libm::log2(WHITE / white).clamp(-MOST_STOPS, MOST_STOPS);
-        if self.render.exposure == Exposure::Auto {
-            if !self.lights.is_empty() {
-                self.render.ambient = Vec3::splat(AMBIENT_SHARE * irradiance as f32);
-            }
-            let full = libm::exp2(-stops) as f32;
-            for material in &mut self.materials {
-                material.emission.factor = (material.emission.factor * full.max(1.0)).min(Vec3::splat(f32::MAX));
-                if material.unlit {
-                    material.color.factor *= full;
-                }
-            }
+        if self.render.exposure == Exposure::Auto && !self.lights.is_empty() {
+            self.render.ambient = Vec3::splat(AMBIENT_SHARE * irradiance as f32);
         }
         stops as f32
     }

@@ -42,6 +42,11 @@ fn accessors_that_do_not_fit_their_bytes_are_refused() {
     position(&format!(r#"{{ "bufferView": 1, "count": 3, {plain} }}"#), "/bufferViews/1/byteStride", "less than");
     position(&format!(r#"{{ "bufferView": 7, "count": 3, {plain} }}"#), "/accessors/1/bufferView", "does not exist");
     position(&format!(r#"{{ "count": 50000000, {plain} }}"#), "/accessors/1/count", "without a bufferView");
+    // Of many that may be read alone, too.
+    let mut file = File::default();
+    let zeros = file.accessor(format!(r#"{{ "count": 3000000, {plain} }}"#));
+    let twice = error(&file, &format!(r#""attributes": {{ "POSITION": {zeros}, "NORMAL": {zeros} }}"#));
+    assert!(twice.contains("(/accessors/0/count)") && twice.contains("in the whole file"), "{twice}");
     let scalar = r#"{ "bufferView": 0, "count": 3, "componentType": 5126, "type": "SCALAR" }"#;
     position(scalar, "/accessors/1/type", "expected 3 numbers");
     let unknown = r#"{ "bufferView": 0, "count": 3, "componentType": 5124, "type": "VEC3" }"#;

@@ -62,6 +62,10 @@ fn extensions_change_what_they_name() {
     assert_eq!((m.transparency, m.ior, m.fresnel, m.thin), (Vec3::splat(0.5), 1.25, true, false));
     assert!(m.absorption.abs_diff_eq(Vec3::new(0.0, 0.5_f32.sqrt().ln().abs(), 0.0), 1e-5), "{}", m.absorption);
     assert!(material(r#"{ "extensions": { "KHR_materials_unlit": {} } }"#).unlit);
+    let ior =
+        |ior: &str| material(&format!(r#"{{ "extensions": {{ "KHR_materials_ior": {{ "ior": {ior} }} }} }}"#)).ior;
+    assert_eq!([ior("2.5"), ior("0.5"), ior("-1")], [2.5, 1.0, 1.0]);
+    assert!([ior("0"), ior("1e38")].iter().all(|&ior| ior > 1e9 && ior.powi(2).is_finite()));
     let glossy = material(
         r#"{ "extensions": { "KHR_materials_pbrSpecularGlossiness":
         { "diffuseFactor": [0.25, 0.5, 0.75, 1], "glossinessFactor": 0.75 } } }"#,

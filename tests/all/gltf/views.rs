@@ -5,7 +5,7 @@ use glam::Vec3;
 use raywalk::render::{Film, Planes, Scratch, render_frame};
 use raywalk::scene::Scene;
 use raywalk::scene::light::{Falloff, LightKind};
-use raywalk::settings::{Exposure, Settings};
+use raywalk::settings::{Exposure, Settings, ToneMap};
 
 /// A white wall of two triangles in the plane z = 0, 10 wide and high, with the given keys besides.
 fn wall(material: &str, rest: &str) -> Scene {
@@ -109,6 +109,55 @@ fn what_takes_no_light_and_what_glows_are_seen_under_any_light() {
         let glowing = r#"{ "emissiveFactor": [1, 1, 1], "pbrMetallicRoughness": { "baseColorFactor": [0, 0, 0, 1] } }"#;
         let glow = middle(&wall(glowing, &rest));
         assert!(glow[0] > 220, "{intensity}: {glow:?}");
+    }
+}
+
+#[test]
+fn what_takes_no_light_is_seen_as_it_is_under_any_exposure() {
+    let sun = r#""extensions": { "KHR_lights_punctual": { "lights": [{ "type": "directional", "intensity": 100000 }] } },
+        "nodes": [{ "mesh": 0 }, { "extensions": { "KHR_lights_punctual": { "light": 0 } } }]"#;
+    let unlit = r#"{ "pbrMetallicRoughness": { "baseColorFactor": [0.5, 0.2, 0.2, 1] }, "extensions": { "KHR_materials_unlit": {} } }"#;
+    let glowing = r#"{ "emissiveFactor": [0.25, 0.25, 0.25], "pbrMetallicRoughness": { "baseColorFactor": [0, 0, 0, 1], "metallicFactor": 1 } }"#;
+    let (unlit, glowing) = (wall(unlit, sun), wall(glowing, sun));
+    // Kept from one frame to the next: what was made for one exposure must not be shown under another.
+    let mut scratch = Scratch::new();
+    let mut exposed = |scene: &Scene, exposure| {
+        let mut film = Film::new(9, 9, Planes::default());
+        let settings = Settings { exposure, tone_map: Some(ToneMap::None), ..Settings::exact() };
+        render_frame(scene, &scene.cameras[0].camera, &settings, &mut scratch, &mut film);
+        (film.rgba()[4 * 40], film.color(4, 4)[0])
+    };
+    for stops in [0.0, 3.0, -7.5] {
+        let (seen, light) = exposed(&unlit, Exposure::Stops(stops));
+        assert_eq!(seen, 188, "{stops}");
+        assert!((light * stops.exp2() - 0.5).abs() < 1e-6, "{stops}: {light}");
+    }
+    assert_eq!(exposed(&unlit, Exposure::Auto), exposed(&unlit, Exposure::Scene));
+    assert_eq!(exposed(&unlit, Exposure::Auto).0, 188);
+    // What glows gives the light that the file says, or more where that would not be seen.
+    for (stops, expected) in [(0.0, 137), (-7.5, 137), (1.0, 188)] {
+        assert_eq!(exposed(&glowing, Exposure::Stops(stops)).0, expected, "{stops}");
+    }
+    assert_eq!(exposed(&glowing, Exposure::Auto).0, 137);
+}
+
+#[test]
+fn the_index_of_refraction_says_what_opaque_surfaces_reflect() {
+    let sun = r#""extensions": { "KHR_lights_punctual": { "lights": [{ "type": "directional", "intensity": 3 }] } },
+        "nodes": [{ "mesh": 0 }, { "extensions": { "KHR_lights_punctual": { "light": 0 } } }]"#;
+    let light = |ior: &str| {
+        let black = r#""pbrMetallicRoughness": { "baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0, "roughnessFactor": 0.5 }"#;
+        let scene = wall(&format!("{{ {black} {ior} }}"), sun);
+        let mut film = Film::new(9, 9, Planes::default());
+        render_frame(&scene, &scene.cameras[0].camera, &Settings::exact(), &mut Scratch::new(), &mut film);
+        film.color(4, 4)[0]
+    };
+    let of = |ior: &str| light(&format!(r#", "extensions": {{ "KHR_materials_ior": {{ "ior": {ior} }} }}"#));
+    let usual = light("");
+    assert!(usual > 0.0 && of("1.5").to_bits() == usual.to_bits());
+    for (ior, f0) in [("1", 0.0), ("2.5", (1.5_f32 / 3.5).powi(2)), ("0", 1.0)] {
+        let ratio = of(ior) / usual;
+        assert!((ratio - f0 / 0.04).abs() < 1e-3 * (1.0 + ratio), "{ior}: {ratio}");
     }
 }
 

@@ -3,15 +3,12 @@
 //! Everything a file says of offsets, strides and counts is computed in u64 with overflow checked, and compared with the
 //! bytes that are really there before any memory is taken.
 
-use super::document::{Document, get, to_usize};
+use super::document::{Document, get, room, to_usize};
 use super::fault::{Fault, Read};
 use gltf::json::accessor::{ComponentType, Type, sparse};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
 use std::fmt;
-
-/// Most elements of an accessor without bytes: nothing else would bound what a few of its words ask for.
-const MOST_ZEROS: u64 = 1 << 22;
 
 /// An accessor whose elements are known to be there.
 pub struct Accessor<'d> {
@@ -67,9 +64,8 @@ impl<'d> Accessor<'d> {
         if count == 0 {
             return Err(Fault::new(format!("/accessors/{i}/count"), "count is 0; expected at least 1"));
         }
-        if accessor.buffer_view.is_none() && count > MOST_ZEROS {
-            let message = format!("{count} elements without a bufferView; expected at most {MOST_ZEROS}");
-            return Err(Fault::new(format!("/accessors/{i}/count"), message));
+        if accessor.buffer_view.is_none() {
+            document.take_zeros(count, format_args!("/accessors/{i}/count"))?;
         }
         let size = (component.size() * kind.multiplicity()) as u64;
         let dense = match accessor.buffer_view {
@@ -169,19 +165,22 @@ impl<'d> Accessor<'d> {
         }
         if let (Which::These(places), Some(dense), None) = (which, &self.dense, &self.sparse) {
             self.document.take_elements(places.len() as u64, pointer)?;
-            let mut elements = vec![[T::default(); N]; places.len()];
+            let mut elements = room(places.len(), pointer)?;
+            elements.resize(places.len(), [T::default(); N]);
             for (element, &place) in elements.iter_mut().zip(places) {
                 copy(&dense.from(place), std::slice::from_mut(element));
             }
             return Ok(elements);
         }
         self.document.take_elements(self.count as u64, pointer)?;
-        let mut elements = vec![[T::default(); N]; self.count];
+        let mut elements = room(self.count, pointer)?;
+        elements.resize(self.count, [T::default(); N]);
         if let Some(dense) = &self.dense {
             copy(dense, &mut elements);
         }
         if let Some(sparse) = &self.sparse {
-            let mut values = vec![[T::default(); N]; sparse.count];
+            let mut values = room(sparse.count, pointer)?;
+            values.resize(sparse.count, [T::default(); N]);
             copy(&sparse.values, &mut values);
             for (place, value) in sparse.places().into_iter().zip(values) {
                 let Some(element) = elements.get_mut(place as usize) else {

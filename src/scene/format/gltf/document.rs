@@ -23,7 +23,12 @@ pub struct Document<'a> {
     /// Vertices and indices that may still be read.
     elements_left: AtomicU64,
     element_limit: u64,
+    /// Elements without bytes that may still be opened.
+    zeros_left: AtomicU64,
 }
+
+/// Most elements without bytes of all uses of accessors together: nothing else would bound what a few words ask for.
+const MOST_ZEROS: u64 = 1 << 22;
 
 impl<'a> Document<'a> {
     /// Takes the buffers of `root` from `bin`, the bytes that came with it, and by `read_file`.
@@ -35,7 +40,13 @@ impl<'a> Document<'a> {
     ) -> Self {
         let buffers = (0..).zip(&root.buffers).map(|(i, buffer)| load(i, buffer, bin, &mut read_file)).collect();
         let element_limit = limits.vertices;
-        Self { root, buffers, elements_left: AtomicU64::new(element_limit), element_limit }
+        Self {
+            root,
+            buffers,
+            elements_left: AtomicU64::new(element_limit),
+            element_limit,
+            zeros_left: AtomicU64::new(MOST_ZEROS),
+        }
     }
 
     /// The bytes of a buffer view, and how far apart its elements are, if it says so. `by` points at who asks.
@@ -65,14 +76,22 @@ impl<'a> Document<'a> {
 
     /// Takes `count` vertices or indices from what a file may ask for.
     pub fn take_elements(&self, count: u64, pointer: fmt::Arguments) -> Read<()> {
-        let left = |left: u64| left.checked_sub(count);
-        match self.elements_left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, left) {
-            Ok(_) => Ok(()),
-            Err(_) => {
-                let message = format!("vertices and indices: {}", exceeded("vertices", self.element_limit));
-                Err(Fault::new(pointer.to_string(), message))
-            }
+        if take(&self.elements_left, count) {
+            return Ok(());
         }
+        let message = format!("vertices and indices: {}", exceeded("vertices", self.element_limit));
+        Err(Fault::new(pointer.to_string(), message))
+    }
+
+    /// Takes `count` elements from what a file may ask for without giving their bytes.
+    pub fn take_zeros(&self, count: u64, pointer: fmt::Arguments) -> Read<()> {
+        if take(&self.zeros_left, count) {
+            return Ok(());
+        }
+        let message = format!(
+            "{count} elements without a bufferView; expected at most {MOST_ZEROS} in the whole file, each use of them counted"
+        );
+        Err(Fault::new(pointer.to_string(), message))
     }
 }
 
@@ -85,6 +104,20 @@ pub fn get<'d, T>(list: &'d [T], index: Index<T>, what: &str, by: fmt::Arguments
         };
         Fault::new(by.to_string(), format!("{what} {} does not exist; {range}", index.value()))
     })
+}
+
+/// Takes `count` from what is left; false where that is less.
+fn take(left: &AtomicU64, count: u64) -> bool {
+    left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(count)).is_ok()
+}
+
+/// Room for `count` vertices or indices; `pointer` points at what asks for them.
+pub fn room<T>(count: usize, pointer: fmt::Arguments) -> Read<Vec<T>> {
+    let mut room = Vec::new();
+    match room.try_reserve_exact(count) {
+        Ok(()) => Ok(room),
+        Err(_) => Err(Fault::new(pointer.to_string(), format!("there is no memory for {count} vertices"))),
+    }
 }
 
 /// What no slice is as long as stays so.

@@ -19,6 +19,8 @@ use std::f32::consts::FRAC_1_PI;
 const DEFAULT: &str = "default";
 /// Roughness of a surface whose glossiness lies in a texture of a kind that is not looked up.
 const UNKNOWN_ROUGHNESS: f32 = 0.5;
+/// An index of refraction at which all light is reflected, to the last bit, and whose square is still a number.
+const REFLECTS_ALL: f32 = 1e10;
 /// Least share of light that a medium passes over its attenuation distance: black would absorb without end.
 const LEAST_PASSED: f32 = 1e-6;
 
@@ -107,8 +109,11 @@ impl Reader<'_, '_> {
         };
         described.unlit = extensions.unlit.is_some();
         if let Some(ior) = &extensions.ior {
-            // 0 stands for a surface that reflects everything, which no index does; below 1 nothing is dense.
-            described.ior = finite(ior.ior.0, described.ior).max(1.0);
+            // 0 stands for a surface that reflects everything; below 1 nothing is dense.
+            described.ior = match ior.ior.0 {
+                0.0 => REFLECTS_ALL,
+                index => finite(index, described.ior).clamp(1.0, REFLECTS_ALL),
+            };
         }
         if let Some(transmission) = &extensions.transmission {
             described.transparency = Vec3::splat(share(transmission.transmission_factor.0));

@@ -1,7 +1,7 @@
 //! Primitives of meshes: attributes and indices to triangles over shared vertices.
 
 use super::accessor::{Accessor, Which};
-use super::document::Document;
+use super::document::{Document, room};
 use super::fault::{Fault, Read};
 use super::nodes::Nodes;
 use super::skin::{self, Holder};
@@ -69,11 +69,12 @@ impl Job<'_> {
 
         let mut positions: Vec<[f32; 3]> = positions.vectors(which)?;
         self.morph(document, which, &mut positions, |target| target.positions)?;
-        let mut mesh = MeshDesc { triangles, vertices: positions.iter().map(vector).collect(), ..MeshDesc::default() };
+        let mut mesh = MeshDesc { triangles, vertices: self.vectors(&positions)?, ..MeshDesc::default() };
+        drop(positions);
         if let Some(normals) = self.vertex_attribute(document, Semantic::Normals, count)? {
             let mut normals: Vec<[f32; 3]> = normals.vectors(which)?;
             self.morph(document, which, &mut normals, |target| target.normals)?;
-            mesh.normals = normals.iter().map(vector).collect();
+            mesh.normals = self.vectors(&normals)?;
         }
         if let Some(uvs) = self.vertex_attribute(document, Semantic::TexCoords(0), count)? {
             let upwards = |[u, v]: &[f32; 2]| DVec2::new((*u).into(), 1.0 - f64::from(*v));
@@ -138,6 +139,13 @@ impl Job<'_> {
         }
     }
 
+    /// In the description's precision.
+    fn vectors(&self, read: &[[f32; 3]]) -> Read<Vec<DVec3>> {
+        let mut vectors = room(read.len(), format_args!("{}", self.pointer))?;
+        vectors.extend(read.iter().map(|&v| DVec3::from_array(v.map(f64::from))));
+        Ok(vectors)
+    }
+
     /// Indices of vertices, all of them there.
     fn indices(&self, document: &Document, vertices: u32) -> Read<Option<Vec<[u32; 1]>>> {
         let Some(index) = self.primitive.indices else { return Ok(None) };
@@ -191,10 +199,6 @@ fn only_used(mut triangles: Vec<[u32; 3]>, count: usize) -> (Vec<[u32; 3]>, Opti
         *vertex = used.partition_point(|other| other < vertex) as u32;
     }
     (triangles, Some(used))
-}
-
-fn vector(v: &[f32; 3]) -> DVec3 {
-    DVec3::new(v[0].into(), v[1].into(), v[2].into())
 }
 
 /// Gives normals without direction that of the triangles around.
