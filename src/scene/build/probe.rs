@@ -27,7 +27,7 @@ pub struct Probe<'a> {
 impl<'a> Probe<'a> {
     /// A probe of `geometry`.
     pub fn new(geometry: &'a Geometry) -> Self {
-        Self::within(geometry, Allowance::UNLIMITED)
+        Self::within(geometry, Allowance::unlimited())
     }
 
     /// A probe that may look at no more of `geometry` than is allowed.
