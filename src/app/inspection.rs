@@ -1,6 +1,6 @@
 //! What is known of the thing that a point of the picture shows.
 
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, PrimitiveId};
 use crate::scene::material::{Alpha, ColorSource, Lookup, Model};
 use crate::scene::{Camera, Material, Scene};
 use glam::{DVec2, Vec3};
@@ -31,11 +31,11 @@ pub fn inspect(scene: &Scene, camera: &Camera, size: (u32, u32), place: DVec2) -
     let object = scene.objects.get(pick.id.object as usize)?;
     let material = scene.materials.get(object.material as usize)?;
     let mut facts = vec![
-        ("kind", format!("{}, object {} of {}", object.kind, pick.id.object, scene.objects.len())),
+        ("kind", format!("{}, object {} of {}", object.kind, pick.id.object + 1, scene.objects.len())),
         ("distance", format!("{} m", rounded(pick.distance))),
-        ("primitive", format!("{} of {}", pick.id.primitive, primitives(scene, pick.id.object, object.kind))),
         ("size", if object.bounds.is_finite() { vector(object.bounds.size()) } else { "endless".to_owned() }),
     ];
+    facts.extend(part(scene, pick.id, object.kind));
     facts.extend(facts_of(material));
     Some(Inspection {
         title: object.name.clone().unwrap_or_else(|| format!("a {} without a name", object.kind)),
@@ -45,10 +45,19 @@ pub fn inspect(scene: &Scene, camera: &Camera, size: (u32, u32), place: DVec2) -
     })
 }
 
-fn primitives(scene: &Scene, object: u32, kind: &str) -> String {
-    let count = scene.primitives_of(object);
-    let what = if matches!(kind, "mesh" | "triangle" | "box" | "rectangle") { "triangle" } else { "primitive" };
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+/// Which part of an object of some kind it is; `None` where that is the whole.
+fn part(scene: &Scene, id: PrimitiveId, kind: &str) -> Option<(&'static str, String)> {
+    let part = match kind {
+        "sphere" | "plane" | "disk" | "rectangle" | "triangle" => return None,
+        "box" => format!("face {} of 6", id.primitive + 1),
+        "cone" | "cylinder" => ["side", "base", "top"].get(id.primitive as usize)?.to_string(),
+        // Numbers are the file's, as in messages about it; triangles without area are not among those that are there.
+        _ => {
+            let count = scene.primitives_of(id.object);
+            format!("triangle {}, counted from 0; {count} of them can be seen", id.primitive)
+        }
+    };
+    Some(("part", part))
 }
 
 /// What of a material is not as usual, and its colour and model.
@@ -167,7 +176,7 @@ mod tests {
         "objects": [
             { "type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "gold", "name": "ball" },
             { "type": "mesh", "vertices": [[2, -1, 0], [4, -1, 0], [4, 1, 0], [2, 1, 0]],
-              "triangles": [[0, 1, 2], [0, 2, 3]], "material": "glass" },
+              "triangles": [[0, 0, 1], [0, 1, 2], [0, 2, 3]], "material": "glass" },
             { "type": "plane", "point": [0, -2, 0], "normal": [0, 1, 0] } ] }"#;
 
     fn scene() -> Scene {
@@ -192,10 +201,30 @@ mod tests {
         assert!(ball.point.abs_diff_eq(Vec3::Z, 1e-5), "{}", ball.point);
         let pane = at(&scene, 0.76, 0.45).expect("the pane");
         assert_eq!(pane.title, "a mesh without a name");
-        assert_eq!(fact(&pane, "primitive"), "1 of 2 triangles");
+        assert_eq!(fact(&pane, "kind"), "mesh, object 2 of 3");
+        assert_eq!(fact(&pane, "part"), "triangle 2, counted from 0; 2 of them can be seen");
+        assert_eq!(fact(&ball, "part"), "", "a sphere has none");
         assert_eq!(fact(&pane, "transparency"), "1, ior 1.5");
         assert_eq!(fact(&at(&scene, 0.5, 0.99).expect("the floor"), "size"), "endless");
         assert_eq!(at(&scene, 0.02, 0.02), None, "the sky");
+    }
+
+    #[test]
+    fn it_tells_the_parts_of_what_has_some() {
+        let text = |object: &str| {
+            format!(
+                r#"{{ "version": 1, "camera": {{ "position": [0, 0, 5], "look_at": [0, 0, 0], "fov": 60 }},
+                    "objects": [{object}] }}"#
+            )
+        };
+        for (object, part) in [
+            (r#"{ "type": "box", "min": [-1, -1, -1], "max": [1, 1, 1] }"#, "face 6 of 6"),
+            (r#"{ "type": "cylinder", "base": [0, 0, -1], "top": [0, 0, 1], "radius": 1, "capped": true }"#, "top"),
+            (r#"{ "type": "cone", "base": [0, -1, 0], "top": [0, 1, 0], "radius": 1 }"#, "side"),
+        ] {
+            let scene = load_text("one.json", &text(object), &LoadOptions::default()).expect("right");
+            assert_eq!(fact(&at(&scene, 0.5, 0.5).expect("it is ahead"), "part"), part);
+        }
     }
 
     #[test]

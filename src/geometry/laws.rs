@@ -108,7 +108,7 @@ macro_rules! define_surface_of {
     ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
         /// Position and normal of a geometry's only primitive at a hit.
         fn surface<S: Simd>(simd: S, geometry: &Geometry, ray: Ray, t: f32) -> (Vec3, Vec3) {
-            let slot = geometry.slots[0];
+            let slot = geometry.slot(0);
             let (origin, direction) = (V3::splat(simd, ray.origin), V3::splat(simd, ray.direction));
             let t = S::f32s::splat(simd, t);
             match slot.kind {

@@ -14,6 +14,7 @@ pub mod instance;
 mod laws;
 pub mod mesh;
 mod nearest;
+pub mod opaque;
 pub mod packet;
 pub mod primitive;
 pub mod ray;
@@ -28,12 +29,13 @@ pub use block::{BLOCK, Block, NO_PRIMITIVE, PrimitiveIndex};
 pub use holes::{HoleMap, Holes, Wrap};
 pub use instance::{Home, Instance, Instances, SharedMesh};
 pub use mesh::Mesh;
+pub use opaque::{Opaque, OpaqueList};
 pub use packet::Packet;
 pub use ray::Rays;
 pub use shape::{Part, PrimitiveId, Shape, VertexAttributes, VertexExtras};
 pub use transform::Transform;
 pub use traverse::{Search, SphereTerms, Stack};
-pub use visitor::{AnyHit, ClosestHit, NextCrossing, Opaque, Visitor};
+pub use visitor::{AnyHit, ClosestHit, NextCrossing, Visitor};
 
 use bvh::{Bvh, Child, LeafMembers};
 use glam::Vec3;
@@ -75,11 +77,12 @@ macro_rules! define_geometry {
         pub struct Geometry {
             $(#[doc = concat!("Blocks of type ", stringify!($kernel), ".")] pub $blocks: Vec<Block<$fields>>,)+
             /// Identity of each primitive that is not part of an instance, ascending.
-            pub ids: Vec<PrimitiveId>,
+            ids: Vec<PrimitiveId>,
             /// Where each of those lies.
-            pub slots: Vec<Slot>,
+            slots: Vec<Slot>,
             /// What the corners of triangles carry, in the kernel's order of corners, for those primitives that carry
-            /// anything. Sorted by their places in `ids`.
+            /// anything. Sorted by how many primitives with a place of their
+            /// own come before.
             pub attributes: Vec<(u32, VertexAttributes)>,
             /// What the corners of few triangles carry besides, in the same order.
             pub extras: Vec<(u32, VertexExtras)>,
@@ -343,6 +346,16 @@ impl Geometry {
             Home::Own(own) => self.slots.get(own as usize).is_some_and(|slot| slot.kind.is_flat()),
             Home::Shared(_) => true,
         }
+    }
+
+    /// What has a place of its own, so everything but instances: where it lies and what it is, in ascending order.
+    pub fn own(&self) -> impl ExactSizeIterator<Item = (Slot, PrimitiveId)> {
+        self.slots.iter().copied().zip(self.ids.iter().copied())
+    }
+
+    /// How many primitives of an object can be hit.
+    pub fn count_of(&self, object: u32) -> usize {
+        self.instances.solids_of(object).unwrap_or_else(|| self.indices_of(object).len())
     }
 
     /// The indices of an object's primitives.

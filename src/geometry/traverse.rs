@@ -89,6 +89,33 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// As [`traverse`](Self::traverse), but every ray finds its way alone: what is looked at does not depend on how many
+    /// there are in a packet. Lanes with a limit below 0 are left alone.
+    #[inline(always)]
+    pub fn traverse_alone<S: Simd, V: Visitor<S>>(
+        &self,
+        simd: S,
+        packet: &Packet<S>,
+        stack: &mut Stack,
+        visitor: &mut V,
+    ) {
+        match &self.geometry.bvh {
+            Some(bvh) if self.use_bvh => {
+                self.visit_all(simd, &[PrimitiveKind::Plane], packet, visitor);
+                self.visit_tree_by_rays(simd, bvh, packet, &mut stack.0, visitor);
+            }
+            _ => self.visit_everything(simd, packet, visitor),
+        }
+    }
+
+    /// How many primitives are tested for every ray, wherever it flies.
+    pub fn always_tested(&self) -> usize {
+        match &self.geometry.bvh {
+            Some(_) if self.use_bvh => self.geometry.count(PrimitiveKind::Plane),
+            _ => self.geometry.len(),
+        }
+    }
+
     /// Tests every primitive, those of instances included.
     #[inline(always)]
     fn visit_everything<S: Simd, V: Visitor<S>>(&self, simd: S, packet: &Packet<S>, visitor: &mut V) {

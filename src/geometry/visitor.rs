@@ -1,6 +1,7 @@
 //! What a traversal does with the hits it finds.
 
-use super::{BLOCK, NO_PRIMITIVE, PrimitiveIndex};
+use super::opaque::Listed;
+use super::{BLOCK, NO_PRIMITIVE, Opaque, PrimitiveIndex};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 
@@ -119,26 +120,6 @@ pub struct AnyHit<'a, S: Simd> {
     pub passed_transparent: bool,
 }
 
-/// Which primitives block light altogether: a bit for each, or all of them.
-#[derive(Clone, Copy, Debug)]
-pub enum Opaque<'a> {
-    /// Every primitive.
-    All,
-    /// Those whose entry is true.
-    Listed(&'a [bool]),
-}
-
-impl Opaque<'_> {
-    /// Whether a primitive blocks light altogether.
-    #[inline(always)]
-    pub fn contains(&self, primitive: PrimitiveIndex) -> bool {
-        match self {
-            Self::All => true,
-            Self::Listed(listed) => listed[primitive as usize],
-        }
-    }
-}
-
 impl<'a, S: Simd> AnyHit<'a, S> {
     /// Nothing found yet; hits count in (0, `limit`), and lanes with a limit of 0 or less are left alone. A lane's
     /// `source` is a primitive that it cannot hit, or [`NO_PRIMITIVE`].
@@ -215,7 +196,7 @@ impl<S: Simd> Visitor<S> for AnyHit<'_, S> {
 /// Finds the next crossing of a transparent primitive in the order of (t, primitive).
 #[derive(Clone, Copy, Debug)]
 pub struct NextCrossing<'a, S: Simd> {
-    opaque: &'a [bool],
+    opaque: Listed<'a>,
     sources: S::u32s,
     last_t: S::f32s,
     last_primitive: S::u32s,
@@ -229,7 +210,7 @@ impl<'a, S: Simd> NextCrossing<'a, S> {
     #[inline(always)]
     pub fn new(
         simd: S,
-        opaque: &'a [bool],
+        opaque: Listed<'a>,
         sources: S::u32s,
         (last_t, last_primitive): (S::f32s, S::u32s),
         limit: S::f32s,
@@ -241,7 +222,7 @@ impl<'a, S: Simd> NextCrossing<'a, S> {
 impl<S: Simd> Visitor<S> for NextCrossing<'_, S> {
     #[inline(always)]
     fn accepts(&mut self, primitive: PrimitiveIndex) -> bool {
-        !self.opaque[primitive as usize]
+        !self.opaque.contains(primitive)
     }
 
     #[inline(always)]

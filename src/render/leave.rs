@@ -107,7 +107,7 @@ mod tests {
             fn surface<S: Simd>(simd: S, geometry: &Geometry, origin: Vec3, direction: Vec3, t: f32) -> (Vec3, Vec3, f32) {
                 let (origin, direction) = (V3::splat(simd, origin), V3::splat(simd, direction));
                 let t = S::f32s::splat(simd, t);
-                match geometry.slots[0].kind {
+                match geometry.slot(0).kind {
                     $(PrimitiveKind::$kernel => {
                         let fields: [S::f32s; $fields] = geometry.$blocks[0].splat(simd, 0);
                         let point = $kernel::surface(&fields, origin, direction, t);

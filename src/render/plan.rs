@@ -75,7 +75,7 @@ impl Plan {
         let absorbs =
             |object: u32| scene.materials[scene.objects[object as usize].material as usize].absorption != Vec3::ZERO;
         let depth = settings.depth.unwrap_or(scene.render.max_depth);
-        let refractions = settings.refractions && depth > 1 && !tables.opaque.is_empty();
+        let refractions = settings.refractions && depth > 1 && tables.opaque.is_some();
         let reflections = settings.reflections && depth > 1 && tables.materials.iter().any(|m| m.secondary);
         let beams = settings.visibility == Visibility::Certified;
         // Whatever found the hits: shaded in the tile's order, they and what follows from them lie close together. Corners
@@ -90,7 +90,7 @@ impl Plan {
             sphere_cache: if has(PrimitiveKind::Sphere) { settings.sphere_cache } else { SphereCache::Off },
             shadows,
             shadow_beams: secondary_beams && shadows && scene.geometry.len() > FEW_PRIMITIVES,
-            coloured_shadows: !tables.opaque.is_empty(),
+            coloured_shadows: tables.opaque.is_some(),
             reflections,
             flat_mirrors: secondary_beams && reflections && tables.flat_mirrors,
             refractions,

@@ -1,6 +1,6 @@
 //! What shading reads of a scene, flattened for gathering into lanes. Made once a scene.
 
-use crate::geometry::{Geometry, Home, Opaque, PrimitiveIndex, SharedMesh, VertexAttributes, VertexExtras};
+use crate::geometry::{Geometry, Home, Opaque, OpaqueList, PrimitiveIndex, SharedMesh, VertexAttributes, VertexExtras};
 use crate::scene::material::{Lookup, Model, Relief, Scaled};
 use crate::scene::{Material, Scene};
 use glam::{Vec3, Vec4};
@@ -223,8 +223,8 @@ pub struct Tables {
     pub tangents: bool,
     /// Whether any triangle carries colours.
     pub vertex_colors: bool,
-    /// For each primitive, those of instances included, whether it blocks all light; empty where every one does.
-    pub opaque: Vec<bool>,
+    /// What blocks all light; `None` where everything does.
+    pub opaque: Option<OpaqueList>,
     /// Objects that bound a transparent body.
     pub transparent_bodies: Vec<u32>,
     /// Whether anything flat mirrors.
@@ -238,31 +238,28 @@ impl Tables {
     pub fn new(scene: &Scene) -> Self {
         let material_of = |object: u32| &scene.materials[scene.objects[object as usize].material as usize];
         let transparent = scene.objects.iter().any(|o| scene.materials[o.material as usize].is_transparent());
-        let opaque = if transparent {
-            opaque(&scene.geometry, |object| !material_of(object).is_transparent())
-        } else {
-            Vec::new()
-        };
+        let opaque =
+            transparent.then(|| OpaqueList::new(&scene.geometry, |object| !material_of(object).is_transparent()));
         let transparent_bodies = (0..scene.objects.len() as u32)
             .filter(|&o| scene.objects[o as usize].body && material_of(o).is_transparent())
             .collect();
         let materials: Vec<FlatMaterial> = scene.materials.iter().map(FlatMaterial::new).collect();
         let mirrors = |object: u32| materials[scene.objects[object as usize].material as usize].secondary;
-        let Geometry { slots, ids, instances, .. } = &*scene.geometry;
+        let (own, instances) = (|| scene.geometry.own(), &scene.geometry.instances);
         let flat_mirrors = materials.iter().any(|material| material.secondary)
-            && (slots.iter().zip(ids).any(|(slot, id)| slot.kind.is_flat() && mirrors(id.object))
+            && (own().any(|(slot, id)| slot.kind.is_flat() && mirrors(id.object))
                 || instances.placed.iter().any(|instance| mirrors(instance.object)));
         let material_number = |object: u32| scene.objects[object as usize].material;
         Self {
             generation: Some(scene.generation),
-            materials_of: ids.iter().map(|id| material_number(id.object)).collect(),
+            materials_of: own().map(|(_, id)| material_number(id.object)).collect(),
             materials_of_instances: instances.placed.iter().map(|own| material_number(own.object)).collect(),
             tangents: scene.geometry.extras.iter().any(|(_, extras)| extras.tangents != [Vec4::ZERO; 3])
                 || instances.meshes.iter().any(SharedMesh::has_tangents),
             vertex_colors: scene.geometry.extras.iter().any(|(_, extras)| extras.colors != [Vec4::ONE; 3])
                 || instances.meshes.iter().any(SharedMesh::has_colors),
-            attributes_of: places(ids.len(), &scene.geometry.attributes),
-            extras_of: places(ids.len(), &scene.geometry.extras),
+            attributes_of: places(own().len(), &scene.geometry.attributes),
+            extras_of: places(own().len(), &scene.geometry.extras),
             materials,
             opaque,
             transparent_bodies,
@@ -330,24 +327,10 @@ impl Tables {
         }
     }
 
-    /// What blocks all light.
-    pub fn opaque(&self) -> Opaque<'_> {
-        if self.opaque.is_empty() { Opaque::All } else { Opaque::Listed(&self.opaque) }
+    /// What of `geometry`, which they were made of, blocks all light.
+    pub fn opaque<'a>(&'a self, geometry: &'a Geometry) -> Opaque<'a> {
+        self.opaque.as_ref().map_or(Opaque::All, |list| Opaque::Listed(list.of(&geometry.instances)))
     }
-}
-
-/// Whether each primitive blocks all light, by the object that it belongs to.
-fn opaque(geometry: &Geometry, blocks: impl Fn(u32) -> bool) -> Vec<bool> {
-    let mut opaque = Vec::with_capacity(geometry.indices());
-    let mut own = geometry.ids.iter().map(|id| id.object).peekable();
-    for instance in &geometry.instances.placed {
-        while let Some(object) = own.next_if(|&object| object < instance.object) {
-            opaque.push(blocks(object));
-        }
-        opaque.resize(opaque.len() + instance.indices().len(), blocks(instance.object));
-    }
-    opaque.extend(own.map(blocks));
-    opaque
 }
 
 /// Where in a list each of `count` primitives has its entry, or [`NOTHING`]; empty if the list is.

@@ -2,7 +2,7 @@
 
 use super::Scene;
 use super::build::Probe;
-use crate::geometry::{NO_PRIMITIVE, PrimitiveId};
+use crate::geometry::PrimitiveId;
 use glam::Vec3;
 
 /// What a ray met.
@@ -18,13 +18,11 @@ impl Scene {
     /// What the ray from `origin` along the unit vector `direction` meets first, farther away than `near`.
     pub fn pick(&self, origin: Vec3, direction: Vec3, near: f32) -> Option<Pick> {
         let (distance, primitive) = Probe::new(&self.geometry).closest(origin, direction, near);
-        (primitive != NO_PRIMITIVE).then(|| Pick { distance, id: self.geometry.ids[primitive as usize] })
+        self.geometry.id(primitive).map(|id| Pick { distance, id })
     }
 
     /// How many primitives an object has, as far as they have an extent.
     pub fn primitives_of(&self, object: u32) -> usize {
-        // Identities are ascending.
-        let before = |object: u32| self.geometry.ids.partition_point(|id| id.object < object);
-        before(object + 1) - before(object)
+        self.geometry.count_of(object)
     }
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Longest time that a file may take.
-const PATIENCE: Duration = Duration::from_secs(5);
+pub const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Files that hold nothing but points and lines.
 const NOTHING_TO_DRAW: [&str; 2] = ["testline.obj", "testpoints.obj"];
@@ -118,7 +118,7 @@ fn every_bad_file_gives_a_picture_or_one_clear_error_in_time() {
 
 /// The program itself on a file, in a gibibyte of memory: it ends by itself, with one line if it fails.
 #[cfg(target_os = "linux")]
-fn told_within_a_gibibyte(file: &Path) -> String {
+pub fn told_within_a_gibibyte(file: &Path) -> String {
     let script = "ulimit -v 1048576; exec \"$0\" render --quiet --size 16x16 --threads 1 --stats - \"$1\"";
     let mut shell = std::process::Command::new("sh");
     let output = shell.args(["-c", script, env!("CARGO_BIN_EXE_raywalk")]).arg(file).output().unwrap();

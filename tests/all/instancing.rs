@@ -49,8 +49,19 @@ fn differences(name: &str, path: &Path, cameras: usize, random: &mut Random) -> 
     assert_eq!(flat.warnings.len(), shared.warnings.len(), "{name}");
     assert_eq!(flat.bounds(), shared.bounds(), "{name}");
     assert_eq!(flat.auto_exposure, shared.auto_exposure, "{name}");
+    let primitives = [&flat, &shared]
+        .map(|scene| (0..scene.objects.len() as u32).map(|object| scene.primitives_of(object)).collect::<Vec<_>>());
+    assert_eq!(primitives[0], primitives[1], "{name}");
     let mut found = Vec::new();
     for (number, camera) in stress::cameras(&flat, cameras, random).iter().enumerate() {
+        let ahead = (camera.look_at - camera.eye).normalize();
+        for _ in 0..50 {
+            let direction = (ahead + random.direction().as_vec3() * 0.5).normalize();
+            let picks = [&flat, &shared].map(|scene| scene.pick(camera.eye, direction, camera.near));
+            if picks[0] != picks[1] {
+                found.push(format!("{name}, camera {number}, pick along {direction}: {picks:?}"));
+            }
+        }
         let expected = PictureBits::of(&render(&flat, camera, &Settings::exact(), SIZE));
         let plain = ("exact".to_owned(), Settings::exact());
         for (flip, settings) in [plain].into_iter().chain(flipped()) {

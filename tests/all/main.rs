@@ -7,6 +7,7 @@ mod bench;
 mod blit;
 mod cli;
 mod corpus;
+mod crowds;
 mod determinism;
 mod exactness;
 mod flat_mirrors;

@@ -171,8 +171,17 @@ impl Instances {
 
     /// The indices of the triangles of an object that is an instance.
     pub fn indices_of(&self, object: u32) -> Option<Range<PrimitiveIndex>> {
+        self.of(object).map(Instance::indices)
+    }
+
+    /// How many triangles of an object that is an instance can be hit.
+    pub(super) fn solids_of(&self, object: u32) -> Option<usize> {
+        self.of(object).map(|instance| instance.with_area as usize)
+    }
+
+    fn of(&self, object: u32) -> Option<&Instance> {
         let number = self.placed.binary_search_by_key(&object, |instance| instance.object).ok()?;
-        Some(self.placed[number].indices())
+        Some(&self.placed[number])
     }
 
     /// How many indices instances take that come before an object.

@@ -1,6 +1,7 @@
 //! What is left of light that passes through transparent things.
 
 use super::Occluders;
+use crate::geometry::opaque::Listed;
 use crate::geometry::{NO_PRIMITIVE, NextCrossing, Stack};
 use crate::math::V3;
 use crate::render::frame::Frame;
@@ -25,7 +26,7 @@ pub(super) fn transmittance<S: Simd>(
     frame: &Frame<'_>,
     occluders: &Occluders<'_, S>,
     flight: &Flight<S>,
-    opaque: &[bool],
+    opaque: Listed<'_>,
     stack: &mut Stack,
 ) -> V3<S::f32s> {
     let &Flight { origin, direction, sources, limit } = flight;

@@ -202,7 +202,7 @@ fn trace_rays<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let opaque = frame.tables.opaque();
+            let opaque = frame.tables.opaque(&frame.scene.geometry);
             for at in range.clone().step_by(S::f32s::LEN) {
                 let lanes = at..at + S::f32s::LEN;
                 let present = (1 << (range.end - at).min(S::f32s::LEN)) - 1;

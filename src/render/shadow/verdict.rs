@@ -82,7 +82,7 @@ impl<'a> Judge<'a> {
             .and_then(|plane| behind_plane(&projection, plane))
             .unwrap_or([0.0, 0.0, nearness(&projection, extent.z[1] + 4.0 * slack)]);
         let receiver = Cover::new(&projection, behind);
-        let (opaque, source) = (frame.tables.opaque(), source.unwrap_or(NO_PRIMITIVE));
+        let (opaque, source) = (frame.tables.opaque(search.geometry), source.unwrap_or(NO_PRIMITIVE));
         Some(Self { search, opaque, projection, receiver, source, extent, bulge })
     }
 

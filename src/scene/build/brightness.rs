@@ -22,8 +22,8 @@ const HIGHLIGHT: f64 = 3.0;
 const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
 /// The usual irradiance of the surfaces that `camera` sees: the mean of its logarithm over what is lit at all (Reinhard et
-/// al., SIGGRAPH 2002), raised where much is far brighter. `None` where nothing is lit. An empty list of lights is a
-/// headlight.
+/// al., SIGGRAPH 2002), raised where much is far brighter. `None` where nothing is lit, or finding out takes
+/// more than the probe may. An empty list of lights is a headlight.
 pub fn usual_irradiance(probe: &mut Probe, camera: &Camera, lights: &[Light]) -> Option<f64> {
     let headlight = [Light {
         name: None,
@@ -34,7 +34,7 @@ pub fn usual_irradiance(probe: &mut Probe, camera: &Camera, lights: &[Light]) ->
     let lights = if lights.is_empty() { &headlight[..] } else { lights };
     let lit = irradiances(probe, camera, &view(camera), lights);
     let mut lit = if lit.is_empty() { irradiances(probe, camera, &around(AROUND), lights) } else { lit };
-    if lit.is_empty() {
+    if lit.is_empty() || probe.is_spent() {
         return None;
     }
     let mean = libm::exp(lit.iter().map(|e| libm::log(*e)).sum::<f64>() / lit.len() as f64);

@@ -49,7 +49,7 @@ struct Place {
     openness: f64,
 }
 
-/// A camera inside, or `None` where nearly nothing is enclosed.
+/// A camera inside, or `None` where nearly nothing is enclosed, or finding out takes more than the probe may.
 ///
 /// Only what faces the eye counts: the inside of a solid thing shows nothing but backs.
 pub fn stand(probe: &mut Probe, bounds: Aabb) -> Option<Camera> {
@@ -65,6 +65,9 @@ pub fn stand(probe: &mut Probe, bounds: Aabb) -> Option<Camera> {
         let mut last = None;
         let mut is_inside = false;
         for storey in STOREYS {
+            if probe.is_spent() {
+                return None;
+            }
             let above = bounds.min + bounds.size() * Vec3::new(x, storey, z);
             let floor = eye_above_floor(probe, above, bounds).filter(|(eye, _)| last.replace(*eye) != Some(*eye));
             let Some((eye, height)) = floor else { continue };
@@ -77,6 +80,9 @@ pub fn stand(probe: &mut Probe, bounds: Aabb) -> Option<Camera> {
         }
         with_floor += u32::from(last.is_some());
         inside += u32::from(is_inside);
+    }
+    if probe.is_spent() {
+        return None;
     }
     let size = bounds.size().as_dvec3();
     let open = libm::log(OPEN * libm::hypot(size.x, size.z));

@@ -1,7 +1,9 @@
 //! From what a file says to what is traced: names resolved, transforms applied, textures decoded.
 
+mod allowance;
 mod bounds;
 mod brightness;
+mod footprint;
 mod framing;
 mod holes;
 mod image;
@@ -29,10 +31,12 @@ use super::texture::ImageTexture;
 use super::{Light, Material, NamedCamera, Object, Progress, RenderDefaults, Scene, Texture, next_generation};
 use crate::geometry::{Geometry, Part};
 use crate::settings::Exposure;
+use allowance::Allowance;
 use glam::Vec3;
 use holes::HoleMaps;
 use image::ImageStore;
 use model::{Contents, Models};
+use parts::TOO_MANY_INDICES;
 use placement::Placement;
 pub(super) use probe::Probe;
 use sharing::{Census, Sharing};
@@ -50,6 +54,10 @@ const AMBIENT_SHARE: f32 = 0.1;
 const WHITE: f64 = 0.5;
 /// Greatest exposure in either direction, as the setting allows it.
 const MOST_STOPS: f64 = 20.0;
+
+/// Steps that looking around may take: some hundred times what scenes of 100,000 triangles ask for. Where more would be needed, as
+/// where very many things lie in one another, the camera is the plain one and the exposure that of no lights.
+const STEPS_AROUND: u64 = 1 << 25;
 
 /// Warnings kept of all files together, each of which has a limit of its own.
 const MOST_WARNINGS: usize = 1000;
@@ -165,6 +173,9 @@ impl SceneBuilder {
         let census = Census::of(&contents.objects, may_have_holes);
         self.sharing.decide(&census, self.models.times());
         self.models.note(census);
+        if let Some(at) = self.sharing.first_without_index(&contents.objects, self.models.times(), may_have_holes) {
+            return Err(Problem::new(at, TOO_MANY_INDICES));
+        }
         match self.sharing.first_beyond(&contents.objects, self.limits.primitives, may_have_holes) {
             None => Ok(()),
             Some(at) => {
@@ -233,13 +244,16 @@ impl SceneBuilder {
         }
         self.models.forget();
         let start = Instant::now();
-        self.progress.begin(format!("building the tree over {} shapes", self.parts.len()), 0);
+        let shapes = self.parts.len() + self.sharing.count();
+        self.progress.begin(format!("building the tree over {shapes} shapes"), 0);
         let (parts, instances) = (std::mem::take(&mut self.parts), std::mem::take(&mut self.sharing).finish());
         let mut geometry = Geometry::build_while(parts, instances, &|| !self.progress.is_cancelled())?;
         geometry.hole_maps = std::mem::take(&mut self.holes.maps);
         let build_ms = start.elapsed().as_secs_f64() * 1e3;
         self.progress.begin("looking around", 0);
-        let mut probe = Probe::new(&geometry);
+        let progress = self.progress.clone();
+        let wanted = || !progress.is_cancelled();
+        let mut probe = Probe::within(&geometry, Allowance::new(STEPS_AROUND, &wanted));
         if self.cameras.is_empty() {
             let camera = framing::start(&mut probe, finite_bounds(&self.objects), &self.render);
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });

@@ -101,8 +101,10 @@ fn share(
 ) -> Outcome<bool> {
     let Some(to_store) = sharing.triangles_to_store(mesh) else { return Ok(false) };
     parts.check(to_store as u64, mesh.triangles.len() as u64)?;
-    let with_area = parts.survey(mesh, placement)?;
-    let is_placed = sharing.place(mesh, object, *placement.transform(), parts.bounds, with_area);
+    let transform = *placement.transform();
+    let survey = sharing.survey(mesh, &transform);
+    parts.take(survey)?;
+    let is_placed = survey.is_some_and(|survey| sharing.place(mesh, object, transform, &survey));
     if !is_placed {
         parts.restart();
     }

@@ -1,9 +1,10 @@
 //! The shapes of one object on their way to the geometry.
 
 use super::bounds::shape_bounds;
+use super::footprint::{Survey, has_area};
 use super::placement::Placement;
 use super::sharing::Totals;
-use crate::geometry::{Aabb, Holes, Mesh, Part, PrimitiveId, Shape, VertexAttributes, VertexExtras};
+use crate::geometry::{Aabb, Holes, Part, PrimitiveId, Shape, VertexAttributes, VertexExtras};
 use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
 use crate::scene::limits::{Limits, exceeded};
 use glam::{DVec3, Vec3};
@@ -31,7 +32,9 @@ impl Corners {
 }
 
 /// Indices of primitives fit 32 bits, and one is kept for none.
-const MOST_INDICES: u64 = u32::MAX as u64 - 1;
+pub const MOST_INDICES: u64 = u32::MAX as u64 - 1;
+/// What is wrong where they do not.
+pub const TOO_MANY_INDICES: &str = "with every mesh as often as it is placed, more than 2^32 triangles";
 
 /// Collects the parts of one object, in ascending order of their primitive, and what all of them share.
 pub struct ObjectParts<'a> {
@@ -69,23 +72,16 @@ impl<'a> ObjectParts<'a> {
             return Err(Problem::new(self.at, message));
         }
         match own + self.elsewhere.indices + indices > MOST_INDICES {
-            true => Err(Problem::new(self.at, "with every mesh as often as it is placed, more than 2^32 triangles")),
+            true => Err(Problem::new(self.at, TOO_MANY_INDICES)),
             false => Ok(()),
         }
     }
 
-    /// Takes a mesh into account that is stored elsewhere. Tells how many of its triangles have area in the world.
-    pub fn survey(&mut self, mesh: &Mesh, placement: &Placement) -> Outcome<u32> {
-        let points: Vec<Vec3> = mesh.vertices.iter().map(|p| placement.point(*p).as_vec3()).collect();
-        let mut with_area = 0;
-        for (triangle, corners) in (0..).zip(&mesh.triangles) {
-            let corners = corners.map(|i| points[i as usize]);
-            if self.has_area(triangle, corners) {
-                self.enclose(Aabb::from_points(corners))?;
-                with_area += 1;
-            }
-        }
-        Ok(with_area)
+    /// Takes a mesh into account that is stored elsewhere; `None` is one that reaches beyond all numbers.
+    pub fn take(&mut self, survey: Option<Survey>) -> Outcome<()> {
+        let Some(Survey { bounds, dropped, first_dropped }) = survey else { return self.enclose(Aabb::INFINITE) };
+        (self.bounds, self.dropped, self.first_dropped) = (bounds, dropped.into(), first_dropped);
+        Ok(())
     }
 
     /// Forgets what was taken into account.
@@ -94,8 +90,8 @@ impl<'a> ObjectParts<'a> {
     }
 
     /// Whether a triangle spans any area; those that do not are counted.
-    fn has_area(&mut self, primitive: u32, [a, b, c]: [Vec3; 3]) -> bool {
-        if cross(a, b, c) != DVec3::ZERO {
+    fn keeps(&mut self, primitive: u32, corners: [Vec3; 3]) -> bool {
+        if has_area(corners) {
             return true;
         }
         if self.dropped == 0 {
@@ -130,7 +126,7 @@ impl<'a> ObjectParts<'a> {
         placement: &Placement,
     ) -> Outcome<()> {
         let [a, b, c] = corners.map(|p| p.as_vec3());
-        if !self.has_area(primitive, [a, b, c]) {
+        if !self.keeps(primitive, [a, b, c]) {
             return Ok(());
         }
         if placement.is_mirrored() {
@@ -160,9 +156,4 @@ impl<'a> ObjectParts<'a> {
         }
         self.bounds
     }
-}
-
-fn cross(a: Vec3, b: Vec3, c: Vec3) -> DVec3 {
-    let a = a.as_dvec3();
-    (b.as_dvec3() - a).cross(c.as_dvec3() - a)
 }

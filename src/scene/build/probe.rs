@@ -1,5 +1,6 @@
 //! Rays into a scene that was just built, to find out what there is to see and how bright it is.
 
+use super::allowance::{Allowance, Allowed};
 use crate::geometry::{ClosestHit, Geometry, NO_PRIMITIVE, Packet, PrimitiveIndex, PrimitiveKind, Search, Stack};
 use crate::math::{SimdToken, V3, dispatch};
 use fearless_simd::Simd;
@@ -20,12 +21,23 @@ pub struct Met {
 pub struct Probe<'a> {
     geometry: &'a Geometry,
     stack: Stack,
+    allowance: Allowance<'a>,
 }
 
 impl<'a> Probe<'a> {
     /// A probe of `geometry`.
     pub fn new(geometry: &'a Geometry) -> Self {
-        Self { geometry, stack: Stack::default() }
+        Self::within(geometry, Allowance::unlimited())
+    }
+
+    /// A probe that may look at no more of `geometry` than is allowed.
+    pub fn within(geometry: &'a Geometry, allowance: Allowance<'a>) -> Self {
+        Self { geometry, stack: Stack::default(), allowance }
+    }
+
+    /// Whether it has looked at all that it may: the last answers mean nothing.
+    pub fn is_spent(&self) -> bool {
+        self.allowance.is_spent()
     }
 
     /// What rays from `origin` meet, farther away than `t_min`.
@@ -55,12 +67,17 @@ impl<'a> Probe<'a> {
 
     fn trace<S: Simd>(&mut self, simd: S, origin: Vec3, directions: &[Vec3], t_min: f32) -> Vec<(f32, PrimitiveIndex)> {
         let search = Search::new(self.geometry, true);
+        let always = search.always_tested() as u64;
         let mut hits = Vec::with_capacity(directions.len());
         for own in directions.chunks(S::f32s::LEN) {
+            if !self.allowance.take(always.saturating_mul(own.len() as u64)) {
+                hits.extend(own.iter().map(|_| (f32::MAX, NO_PRIMITIVE)));
+                continue;
+            }
             simd.vectorize(
                 #[inline(always)]
                 || {
-                    // Lanes to spare repeat the first ray.
+                    // Lanes to spare repeat the first ray, and go nowhere.
                     let mut lanes: V3<S::f32s> = V3::splat(simd, own[0]);
                     for (lane, direction) in own.iter().enumerate() {
                         lanes.x.as_mut_slice()[lane] = direction.x;
@@ -68,10 +85,14 @@ impl<'a> Probe<'a> {
                         lanes.z.as_mut_slice()[lane] = direction.z;
                     }
                     let packet = Packet::new(self.geometry, V3::splat(simd, origin), lanes);
-                    let (near, far) = (S::f32s::splat(simd, t_min), S::f32s::splat(simd, f32::INFINITY));
-                    let mut visitor = ClosestHit::new(simd, near, far);
-                    search.traverse(simd, &packet, &mut self.stack, &mut visitor);
-                    hits.extend((0..own.len()).map(|lane| (visitor.t[lane], visitor.primitive[lane])));
+                    let near = S::f32s::splat(simd, t_min);
+                    let mut far = S::f32s::splat(simd, f32::INFINITY);
+                    far.as_mut_slice()[own.len()..].fill(-1.0);
+                    let closest = ClosestHit::new(simd, near, far);
+                    let mut visitor = Allowed { closest, allowance: &self.allowance };
+                    search.traverse_alone(simd, &packet, &mut self.stack, &mut visitor);
+                    let ClosestHit { t, primitive, .. } = visitor.closest;
+                    hits.extend((0..own.len()).map(|lane| (t[lane], primitive[lane])));
                 },
             );
         }

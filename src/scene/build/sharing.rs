@@ -3,7 +3,9 @@
 //! Flattened is faster to trace: beams see every triangle, and no ray is taken into another space. So meshes are
 //! shared only where that saves real memory.
 
-use crate::geometry::{Aabb, Instance, Instances, Mesh, SharedMesh, Transform};
+use super::footprint::{Footprint, Survey};
+use super::parts::MOST_INDICES;
+use crate::geometry::{Instance, Instances, Mesh, SharedMesh, Transform};
 use crate::scene::desc::problem::At;
 use crate::scene::desc::{ObjectDesc, ShapeDesc};
 use std::collections::HashMap;
@@ -75,6 +77,8 @@ fn each(objects: &[ObjectDesc], mut show: impl FnMut(&ObjectDesc)) {
 struct Candidate {
     mesh: Arc<Mesh>,
     stored: Option<u32>,
+    /// Made when it is placed for the first time.
+    footprint: Option<Footprint>,
 }
 
 /// What instances take.
@@ -117,7 +121,11 @@ impl Sharing {
                 Instancing::WhenItPays => in_all >= LEAST_SAVING && saving(mesh, *count) >= LEAST_SAVING_A_MESH,
             };
             if shares {
-                self.candidates.entry(address).or_insert_with(|| Candidate { mesh: Arc::clone(mesh), stored: None });
+                self.candidates.entry(address).or_insert_with(|| Candidate {
+                    mesh: Arc::clone(mesh),
+                    stored: None,
+                    footprint: None,
+                });
             }
         }
     }
@@ -142,6 +150,27 @@ impl Sharing {
         beyond
     }
 
+    /// The first of a file's objects with which its shared meshes have more triangles, as often as they are placed, than
+    /// there are indices; the file is placed `times` times.
+    pub fn first_without_index(
+        &self,
+        objects: &[ObjectDesc],
+        times: u64,
+        may_have_holes: impl Fn(&ObjectDesc) -> bool,
+    ) -> Option<At> {
+        let (mut indices, mut beyond) = (0_u64, None);
+        each(objects, |object| {
+            let ShapeDesc::Mesh(mesh) = &object.shape else { return };
+            if self.candidates.contains_key(&Arc::as_ptr(mesh)) && !may_have_holes(object) {
+                indices = indices.saturating_add(times.saturating_mul(mesh.triangles.len() as u64));
+                if indices > MOST_INDICES {
+                    beyond.get_or_insert(object.at);
+                }
+            }
+        });
+        beyond
+    }
+
     /// How many triangles have to be stored before a mesh can be placed; `None` if it is not to be shared.
     pub fn triangles_to_store(&self, mesh: &Arc<Mesh>) -> Option<usize> {
         let candidate = self.candidates.get(&Arc::as_ptr(mesh))?;
@@ -153,9 +182,15 @@ impl Sharing {
         self.totals
     }
 
-    /// Places a mesh as an object whose bounds in the world are known, and how many of its triangles have area there.
+    /// What a mesh that is to be shared comes to under a transform; `None` if it reaches beyond all numbers.
+    pub fn survey(&mut self, mesh: &Arc<Mesh>, transform: &Transform) -> Option<Survey> {
+        let footprint = &mut self.candidates.get_mut(&Arc::as_ptr(mesh))?.footprint;
+        footprint.get_or_insert_with(|| Footprint::new(mesh)).survey(mesh, transform)
+    }
+
+    /// Places a mesh as an object, given what it comes to there.
     /// False if it has to be flattened after all: it is empty, or rays cannot be taken into its space.
-    pub fn place(&mut self, mesh: &Arc<Mesh>, object: u32, transform: Transform, bounds: Aabb, with_area: u32) -> bool {
+    pub fn place(&mut self, mesh: &Arc<Mesh>, object: u32, transform: Transform, survey: &Survey) -> bool {
         let Some(candidate) = self.candidates.get_mut(&Arc::as_ptr(mesh)) else { return false };
         let known = match candidate.stored {
             Some(known) => known,
@@ -167,7 +202,9 @@ impl Sharing {
             }
         };
         let shared = &self.instances.meshes[known as usize];
-        let Some(instance) = Instance::new((known, shared), object, transform, bounds, with_area) else { return false };
+        let with_area = mesh.triangles.len() as u32 - survey.dropped;
+        let instance = Instance::new((known, shared), object, transform, survey.bounds, with_area);
+        let Some(instance) = instance else { return false };
         self.totals.indices += mesh.triangles.len() as u64;
         self.instances.placed.push(instance);
         true

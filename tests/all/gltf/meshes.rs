@@ -43,7 +43,7 @@ fn modes_make_triangles_and_keep_their_numbers() {
     let attributes = format!(r#""attributes": {{ "POSITION": {positions} }}"#);
     let numbers = |mode: u32| -> Vec<u32> {
         let scene = primitive(&file, &format!(r#"{attributes}, "mode": {mode}"#));
-        scene.geometry.ids.iter().map(|PrimitiveId { primitive, .. }| *primitive).collect()
+        scene.geometry.own().map(|(_, PrimitiveId { primitive, .. })| primitive).collect()
     };
     assert_eq!(numbers(4), [0]);
     // Of (1, 3, 2) and (2, 3, 4), corners 2 and 3 are the same point.

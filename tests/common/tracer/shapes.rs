@@ -34,9 +34,10 @@ pub struct Surface {
 
 /// All primitives, in the order of their identity.
 pub fn primitives(geometry: &Geometry) -> Vec<Primitive> {
-    (0..geometry.len())
-        .map(|i| {
-            let (slot, id) = (geometry.slots[i], geometry.ids[i]);
+    geometry
+        .own()
+        .enumerate()
+        .map(|(i, (slot, id))| {
             let (block, place) = (slot.block as usize, usize::from(slot.place));
             let fields: Vec<f64> = match slot.kind {
                 PrimitiveKind::Sphere => geometry.spheres[block].get(place).map(f64::from).to_vec(),
