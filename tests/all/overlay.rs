@@ -602,11 +602,11 @@ fn scenes_opened_before_are_opened_again() {
     let recent: &'static [std::path::PathBuf] = Box::leak(Box::new(["/scenes/hall.glb".into(), "/b.obj".into()]));
     let mut panel = Panel::new();
     panel.report.recent = recent;
-    panel.report.blind = Some("too many watches");
+    panel.report.blind = Some("changes in /scenes are not noticed: too many watches");
     let mut harness = panel.harness();
     harness.get_by_label("Scene").click();
     harness.run();
-    harness.get_by_label("changes on disk are not noticed: too many watches");
+    harness.get_by_label("changes in /scenes are not noticed: too many watches");
     assert_eq!(wish(&mut harness, "hall.glb"), Some(Wish::OpenFile("/scenes/hall.glb".into())));
     assert_eq!(wish(&mut harness, "Open..."), Some(Wish::Open));
     assert_eq!(wish(&mut harness, "Reload"), Some(Wish::Reload));
