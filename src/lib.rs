@@ -43,6 +43,9 @@
 
 pub mod settings;
 
+#[cfg(test)]
+mod temporary;
+
 pub mod math;
 
 pub mod geometry;

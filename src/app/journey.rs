@@ -236,7 +236,7 @@ fn write_to(folder: &Path, text: &str) -> Result<PathBuf, PictureError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::temporary::Folder;
+    use crate::temporary::Folder;
     use glam::Vec3;
 
     fn view(x: f32) -> Camera {
@@ -268,11 +268,11 @@ mod tests {
                 let t = f64::from(i) * 0.01;
                 journey.see(after(start, t), view((t - 1.0).clamp(0.0, 2.0) as f32));
             }
-            let news = told(&mut journey, (after(start, 4.0), view(2.0)), &[&folder.0]);
-            let file = folder.0.join(format!("raywalk-path-000{number}.json"));
+            let news = told(&mut journey, (after(start, 4.0), view(2.0)), &[folder.path()]);
+            let file = folder.path().join(format!("raywalk-path-000{number}.json"));
             assert_eq!(news, News::Done(format!("Path written to {}: P replays it", file.display())));
         }
-        let path = CameraPath::load(&folder.0.join("raywalk-path-0002.json")).expect("it is a path");
+        let path = CameraPath::load(&folder.path().join("raywalk-path-0002.json")).expect("it is a path");
         assert!((path.duration() - 4.0).abs() < 1e-6, "{}", path.duration());
         assert_eq!(journey.replay(start), Start::Begun);
         for i in 0..=40 {
@@ -329,10 +329,10 @@ mod tests {
     #[test]
     fn where_no_file_can_be_written_the_next_folder_is_tried_and_the_replay_is_kept() {
         let folder = Folder::new();
-        let (missing, start) = (folder.0.join("missing"), Instant::now());
+        let (missing, start) = (folder.path().join("missing"), Instant::now());
         let mut journey = Journey::default();
         let why = format!("{}: cannot write", missing.join("raywalk-path-0001.json").display());
-        for folders in [vec![missing.as_path()], vec![&missing, &folder.0]] {
+        for folders in [vec![missing.as_path()], vec![&missing, folder.path()]] {
             journey.record(start, view(0.0));
             let News::Problem(text) = told(&mut journey, (after(start, 1.0), view(1.0)), &folders) else {
                 panic!("nothing is wrong")

@@ -237,10 +237,11 @@ mod tests {
     use super::*;
     use crate::app::lowering::Lowering;
     use crate::app::methods::Aspect;
-    use crate::picture::temporary::Folder;
     use crate::render::Planes;
     use crate::scene::{Scene, nothing};
     use crate::settings::Fill;
+    use crate::temporary::Folder;
+    use serde_json::json;
     use std::sync::{Arc, LazyLock};
 
     fn job() -> Job {
@@ -323,11 +324,11 @@ mod tests {
     fn pictures_are_numbered_past_those_that_are_there_and_tell_what_made_them() {
         let folder = Folder::new();
         folder.write("walk-0001.png", b"of old");
-        let name = name(&folder.0.join("walk-%04d.png")).expect("a number and .png");
+        let name = name(&folder.path().join("walk-%04d.png")).expect("a number and .png");
         let place = Place { turned: vec!["lamp: off".to_owned()], ..place(None) };
         for number in [2, 3] {
             let news = errand(Shot { place: place.clone(), ..shot(Some(7)) }, name.clone())();
-            let path = folder.0.join(format!("walk-000{number}.png"));
+            let path = folder.path().join(format!("walk-000{number}.png"));
             assert_eq!(news, Some(News::Done(format!("screenshot: {}", path.display()))));
             let file = std::io::BufReader::new(std::fs::File::open(path).expect("there"));
             let reader = png::Decoder::new(file).read_info().expect("a PNG");
@@ -342,13 +343,13 @@ mod tests {
             assert!(text("raywalk:samples").starts_with("7 of 16"));
             assert!(text("raywalk:lights").starts_with("lamp: off; "));
         }
-        assert_eq!(std::fs::read(folder.0.join("walk-0001.png")).expect("there"), b"of old");
+        assert_eq!(std::fs::read(folder.path().join("walk-0001.png")).expect("there"), b"of old");
     }
 
     #[test]
     fn a_folder_that_is_not_there_is_told_of() {
         let folder = Folder::new();
-        let name = name(&folder.0.join("missing/%d.png")).expect("a number and .png");
+        let name = name(&folder.path().join("missing/%d.png")).expect("a number and .png");
         let Some(News::Problem(text)) = errand(shot(None), name)() else { panic!("written") };
         assert!(text.contains("missing"), "{text}");
     }

@@ -12,8 +12,6 @@ mod numbered;
 mod pending_file;
 mod ppm;
 mod read;
-#[cfg(test)]
-pub(crate) mod temporary;
 mod transfer;
 
 pub use annotated::{Note, write_annotated};

@@ -161,13 +161,13 @@ fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::temporary::Folder;
     use super::*;
+    use crate::temporary::Folder;
 
     #[test]
     fn the_name_appears_only_with_the_whole_contents() {
         let folder = Folder::new();
-        let target = folder.0.join("a.png");
+        let target = folder.path().join("a.png");
         let pending = PendingFile::create(&target).expect("writable");
         assert!(!target.exists());
         pending.commit(|sink| Ok(sink.write_all(b"whole")?)).expect("written");
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn leftovers_are_known_by_their_names() {
         let folder = Folder::new();
-        let pending = PendingFile::create(&folder.0.join("a.png")).expect("writable");
+        let pending = PendingFile::create(&folder.path().join("a.png")).expect("writable");
         assert!(folder.names().iter().all(|name| PendingFile::is_leftover(name)) && folder.names().len() == 1);
         drop(pending);
         for other in
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn a_failed_or_abandoned_file_leaves_the_old_one() {
         let folder = Folder::new();
-        let target = folder.0.join("a.png");
+        let target = folder.path().join("a.png");
         fs::write(&target, b"old").expect("writable");
         drop(PendingFile::create(&target).expect("writable"));
         let failed = PendingFile::create(&target).expect("writable").commit(|sink| {
@@ -208,7 +208,7 @@ mod tests {
     fn many_writers_at_once_never_overwrite_each_other() {
         let folder = Folder::new();
         folder.write("2.png", b"of old");
-        let name = |number: u64| folder.0.join(format!("{number}.png"));
+        let name = |number: u64| folder.path().join(format!("{number}.png"));
         let names: Vec<PathBuf> = std::thread::scope(|scope| {
             let write = |text: String| {
                 let pending = PendingFile::beside(&name(1)).expect("writable");
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn places_that_cannot_be_written_are_refused_at_once() {
         let folder = Folder::new();
-        for bad in [folder.0.join("missing/a.png"), folder.0.clone()] {
+        for bad in [folder.path().join("missing/a.png"), folder.path().to_owned()] {
             let error = PendingFile::create(&bad).expect_err("not writable").to_string();
             assert!(error.contains("cannot write"), "{error}");
         }
@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn a_link_stays_a_link_and_a_device_a_device() {
         let folder = Folder::new();
-        let (real, link) = (folder.0.join("real.png"), folder.0.join("link.png"));
+        let (real, link) = (folder.path().join("real.png"), folder.path().join("link.png"));
         fs::write(&real, b"old").expect("writable");
         std::os::unix::fs::symlink(&real, &link).expect("links work");
         PendingFile::create(&link).expect("writable").commit(|sink| Ok(sink.write_all(b"new")?)).expect("written");

@@ -139,8 +139,8 @@ fn read_exr(path: &Path) -> Result<Picture, PictureError> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::temporary::Folder;
     use super::*;
+    use crate::temporary::Folder;
 
     #[test]
     fn sixteen_bits_keep_their_precision() {
@@ -212,6 +212,6 @@ mod tests {
             assert!(message.contains(name) && !message.contains('\n'), "{message}");
         }
         assert!(read(Path::new("no/such/file.png")).expect_err("missing").to_string().contains("no/such/file.png"));
-        assert!(read(&folder.0).is_err());
+        assert!(read(folder.path()).is_err());
     }
 }

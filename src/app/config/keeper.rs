@@ -121,8 +121,8 @@ impl Keeper {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::temporary::Folder;
     use crate::scene::Camera;
+    use crate::temporary::Folder;
 
     fn keeper() -> Keeper {
         let store = Store::open(std::env::temp_dir().join("raywalk-never-written/config.json")).0;
@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn two_windows_keep_what_each_of_them_changed() {
         let folder = Folder::new();
-        let path = folder.0.join("config.json");
+        let path = folder.path().join("config.json");
         let open = || {
             let (store, config, _) = Store::open(path.clone());
             Keeper::new(Some(store), config, &Settings::balanced())
@@ -172,7 +172,7 @@ mod tests {
     #[test]
     fn what_could_not_be_written_is_written_with_the_next_change() {
         let folder = Folder::new();
-        let path = folder.0.join("raywalk/config.json");
+        let path = folder.path().join("raywalk/config.json");
         let (store, config, _) = Store::open(path.clone());
         let mut keeper = Keeper::new(Some(store), config, &Settings::balanced());
         let in_the_way = folder.write("raywalk", b"");

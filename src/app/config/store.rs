@@ -131,8 +131,8 @@ fn put_aside(path: &Path) -> io::Result<()> {
 mod tests {
     use super::super::Keeper;
     use super::*;
-    use crate::picture::temporary::Folder;
     use crate::settings::Settings;
+    use crate::temporary::Folder;
 
     fn scaled(ui_scale: f32) -> Config {
         Config { ui_scale, ..Config::default() }
@@ -141,7 +141,7 @@ mod tests {
     #[test]
     fn a_missing_file_is_the_default_and_is_made_with_its_folders() {
         let folder = Folder::new();
-        let path = folder.0.join("new/raywalk/config.json");
+        let path = folder.path().join("new/raywalk/config.json");
         let (store, config, warning) = Store::open(path.clone());
         assert_eq!((config, warning), (Config::default(), None));
         store.update(|current| current.map_or(scaled(2.0), |_| scaled(3.0))).expect("writable");
@@ -161,14 +161,14 @@ mod tests {
                 store.clone().update(|_| scaled(scale)).expect("writable");
                 assert_eq!(Store::open(path.clone()).1, scaled(scale));
                 assert_eq!(folder.names().len(), 2, "{:?}", folder.names());
-                assert_eq!(fs::read_to_string(folder.0.join("config.json.broken")).expect("kept"), broken);
+                assert_eq!(fs::read_to_string(folder.path().join("config.json.broken")).expect("kept"), broken);
             }
             // Broken once more, by hand, while the window is open.
             fs::write(&path, "{").expect("writable");
             store.update(|current| current.unwrap_or(scaled(1.5))).expect("writable");
             assert_eq!(Store::open(path.clone()).1, scaled(1.5));
-            assert_eq!(fs::read_to_string(folder.0.join("config.json.broken")).expect("kept"), broken);
-            assert_eq!(fs::read_to_string(folder.0.join("config.json.broken-2")).expect("kept"), "{");
+            assert_eq!(fs::read_to_string(folder.path().join("config.json.broken")).expect("kept"), broken);
+            assert_eq!(fs::read_to_string(folder.path().join("config.json.broken-2")).expect("kept"), "{");
         }
     }
 
@@ -177,7 +177,7 @@ mod tests {
         let folder = Folder::new();
         let path = folder.write("config.json", &[0xff, 0xfe]);
         assert!(Store::open(path.clone()).2.is_some(), "no text at all");
-        let (store, _, warning) = Store::open(folder.0.clone());
+        let (store, _, warning) = Store::open(folder.path().to_owned());
         assert!(warning.is_some() && store.update(|_| scaled(2.0)).is_err(), "a folder");
         fs::write(&path, " ".repeat(MAX_BYTES as usize + 1)).expect("writable");
         assert!(Store::open(path).2.is_some(), "too large");
@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn more_than_could_be_read_again_is_not_written() {
         let folder = Folder::new();
-        let (store, ..) = Store::open(folder.0.join("config.json"));
+        let (store, ..) = Store::open(folder.path().join("config.json"));
         let screenshots = Some("x".repeat(MAX_BYTES as usize));
         assert!(store.update(|_| Config { screenshots, ..Config::default() }).is_err());
         assert_eq!(folder.names(), [""; 0]);
@@ -196,13 +196,13 @@ mod tests {
     #[test]
     fn a_link_stays_one_and_what_it_led_to_is_not_lost() {
         let folder = Folder::new();
-        let (real, link) = (folder.write("mine.json", b"{ 1"), folder.0.join("config.json"));
+        let (real, link) = (folder.write("mine.json", b"{ 1"), folder.path().join("config.json"));
         std::os::unix::fs::symlink(&real, &link).expect("links work");
         let (store, ..) = Store::open(link.clone());
         store.update(|_| scaled(2.0)).expect("writable");
         assert!(fs::symlink_metadata(&link).expect("there").is_symlink());
         assert_eq!(Store::open(real).1, scaled(2.0));
-        assert_eq!(fs::read(folder.0.join("mine.json.broken")).expect("kept"), b"{ 1");
+        assert_eq!(fs::read(folder.path().join("mine.json.broken")).expect("kept"), b"{ 1");
     }
 
     #[test]
@@ -210,7 +210,7 @@ mod tests {
         let folder = Folder::new();
         // A file where the folder should be.
         folder.write("raywalk", b"");
-        let (store, config, _) = Store::open(folder.0.join("raywalk/config.json"));
+        let (store, config, _) = Store::open(folder.path().join("raywalk/config.json"));
         let mut keeper = Keeper::new(Some(store), config, &Settings::balanced());
         let mut told = Vec::new();
         for scale in [2.0, 3.0] {

@@ -84,7 +84,7 @@ pub fn best(paths: &[PathBuf]) -> Option<&PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::scenes::temporary::Folder;
+    use crate::temporary::Folder;
 
     #[test]
     fn a_folder_opens_its_one_scene_or_says_which_there_are() {

@@ -17,8 +17,6 @@ mod load;
 mod recent;
 mod report;
 #[cfg(test)]
-mod temporary;
-#[cfg(test)]
 mod trials;
 mod watch;
 

@@ -1,7 +1,7 @@
 //! Scenes opened, edited, broken and mended while they are shown.
 
-use super::temporary::Folder;
 use super::*;
+use crate::temporary::Folder;
 use std::sync::Mutex;
 
 const SOON: Duration = Duration::from_secs(20);

@@ -149,7 +149,7 @@ impl<W: Watcher, F: Fn(Sight)> Eye<W, F> {
     fn learn(&mut self, files: Vec<SeenFile>) {
         for SeenFile { path, stamp } in files {
             // Where it is a link, the link may be changed as well as what it leads to.
-            for place in [place_of(&path), path.canonicalize().ok()].into_iter().flatten() {
+            for place in [name_of(&path), path.canonicalize().ok()].into_iter().flatten() {
                 self.files.insert(place, stamp);
             }
         }
@@ -223,7 +223,7 @@ impl<W: Watcher, F: Fn(Sight)> Eye<W, F> {
 
 /// Where a file stands, as the system will call it: in its folder's one path, by its own name. A folder that is not there
 /// has no path but the one it was looked for by.
-fn place_of(path: &Path) -> Option<PathBuf> {
+fn name_of(path: &Path) -> Option<PathBuf> {
     let path = std::path::absolute(path).ok()?;
     let folder = path.parent()?;
     Some(folder.canonicalize().unwrap_or_else(|_| folder.to_owned()).join(path.file_name()?))
@@ -232,7 +232,7 @@ fn place_of(path: &Path) -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::scenes::temporary::Folder;
+    use crate::temporary::Folder;
     use std::fs;
 
     const SOON: Duration = Duration::from_secs(20);

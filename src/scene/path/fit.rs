@@ -131,6 +131,7 @@ mod tests {
     use super::super::READABLE_KEYS;
     use super::*;
     use crate::math::random::SplitMix64;
+    use crate::temporary::Folder;
     use glam::Vec3;
     use std::path::Path;
 
@@ -222,10 +223,8 @@ mod tests {
         let samples: Vec<Sample> = (0..READABLE_KEYS).map(&mut sample).collect();
         let path = CameraPath::fitted(&samples, 60.0, TOLERANCE).expect("there are samples");
         assert!(path.keys.len() > READABLE_KEYS / 2, "{} keys", path.keys.len());
-        let file = std::env::temp_dir().join(format!("raywalk-longest-path-{}.json", std::process::id()));
-        std::fs::write(&file, path.to_json()).expect("it can be written");
-        let read = CameraPath::load(&file);
-        std::fs::remove_file(&file).expect("it is ours");
-        assert_eq!(read.expect("it can be read"), path);
+        let folder = Folder::new();
+        let file = folder.write("walk.json", path.to_json());
+        assert_eq!(CameraPath::load(&file).expect("it can be read"), path);
     }
 }
