@@ -9,7 +9,6 @@ use crate::render::Film;
 use crate::scene::{Camera, NamedCamera};
 use crate::settings::{ROWS, Row, Settings, Supersample};
 use glam::Vec3;
-use serde_json::json;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -149,15 +148,6 @@ pub fn errand(shot: Shot, name: NumberedName) -> Errand {
 /// What is written into the file.
 fn notes(shot: &Shot) -> Vec<Note> {
     let (settings, place) = (shot.settings(), &shot.place);
-    let Camera { eye, look_at, up, fov, near, far } = shot.job.camera;
-    let mut camera =
-        json!({ "position": eye.to_array(), "look_at": look_at.to_array(), "up": up.to_array(), "fov": fov });
-    if near > 0.0 {
-        camera["near"] = json!(near);
-    }
-    if far.is_finite() {
-        camera["far"] = json!(far);
-    }
     let values: serde_json::Map<_, _> =
         picture_rows().map(|row| (row.name.to_owned(), (row.get)(&settings).into())).collect();
     let scene = place.file.as_ref().map_or_else(|| "built-in".to_owned(), |file| file.display().to_string());
@@ -165,7 +155,7 @@ fn notes(shot: &Shot) -> Vec<Note> {
         ("Software", format!("raywalk {}", env!("CARGO_PKG_VERSION"))),
         ("raywalk:command", command(shot, &settings)),
         ("raywalk:scene", scene),
-        ("raywalk:camera", camera.to_string()),
+        ("raywalk:camera", shot.job.camera.to_json()),
         ("raywalk:settings", serde_json::Value::Object(values).to_string()),
     ];
     if !place.turned.is_empty() {
