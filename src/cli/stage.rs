@@ -68,8 +68,7 @@ impl Stage {
 
     /// The same with other settings, what they leave to the scene filled in.
     pub fn with_settings(mut self, settings: &Settings) -> Self {
-        let depth = settings.depth.unwrap_or(self.loaded.scene.render.max_depth);
-        self.settings = Settings { depth: Some(depth), ..settings.clone() };
+        self.settings = self.loaded.scene.resolved(settings);
         self
     }
 }

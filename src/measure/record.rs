@@ -88,7 +88,7 @@ impl<'a> Subject<'a> {
     pub fn new(scene: &'a Scene, settings: &Settings, (width, height): (u32, u32), total_ms: f64) -> Self {
         Self {
             scene,
-            settings: Settings { depth: settings.depth.or(Some(scene.render.max_depth)), ..settings.clone() },
+            settings: scene.resolved(settings),
             width,
             height,
             load_ms: total_ms - scene.build_ms,

@@ -37,7 +37,7 @@ pub use progress::Progress;
 pub use texture::Texture;
 
 use crate::geometry::{Aabb, Geometry};
-use crate::settings::{Exposure, ToneMap};
+use crate::settings::{Exposure, Settings, ToneMap};
 use glam::Vec3;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -152,6 +152,11 @@ impl Scene {
             Exposure::Stops(_) => 1.0,
             Exposure::Auto | Exposure::Scene => libm::exp2f(-self.stops(exposure)),
         }
+    }
+
+    /// `settings` with what they leave to the scene filled in.
+    pub fn resolved(&self, settings: &Settings) -> Settings {
+        Settings { depth: settings.depth.or(Some(self.render.max_depth)), ..settings.clone() }
     }
 
     /// The stops that `exposure` means for this scene.
