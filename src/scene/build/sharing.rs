@@ -72,6 +72,19 @@ fn each(objects: &[ObjectDesc], mut show: impl FnMut(&ObjectDesc)) {
     }
 }
 
+/// The first of `objects` with which the numbers that `count` gives of their meshes come to more than `limit`.
+fn first_over(limit: u64, objects: &[ObjectDesc], count: impl Fn(&ObjectDesc, &Arc<Mesh>) -> u64) -> Option<At> {
+    let (mut sum, mut over) = (0_u64, None);
+    each(objects, |object| {
+        let ShapeDesc::Mesh(mesh) = &object.shape else { return };
+        sum = sum.saturating_add(count(object, mesh));
+        if sum > limit {
+            over.get_or_insert(object.at);
+        }
+    });
+    over
+}
+
 /// A mesh that is to be shared, and where it is stored once it was placed.
 #[derive(Debug)]
 struct Candidate {
@@ -137,17 +150,10 @@ impl Sharing {
         limit: u64,
         may_have_holes: impl Fn(&ObjectDesc) -> bool,
     ) -> Option<At> {
-        let (mut triangles, mut beyond) = (0_u64, None);
-        each(objects, |object| {
-            let ShapeDesc::Mesh(mesh) = &object.shape else { return };
-            if may_have_holes(object) || !self.candidates.contains_key(&Arc::as_ptr(mesh)) {
-                triangles += mesh.triangles.len() as u64;
-                if triangles > limit {
-                    beyond.get_or_insert(object.at);
-                }
-            }
-        });
-        beyond
+        first_over(limit, objects, |object, mesh| {
+            let is_flattened = may_have_holes(object) || !self.candidates.contains_key(&Arc::as_ptr(mesh));
+            if is_flattened { mesh.triangles.len() as u64 } else { 0 }
+        })
     }
 
     /// The first of a file's objects with which its shared meshes have more triangles, as often as they are placed, than
@@ -158,17 +164,10 @@ impl Sharing {
         times: u64,
         may_have_holes: impl Fn(&ObjectDesc) -> bool,
     ) -> Option<At> {
-        let (mut indices, mut beyond) = (0_u64, None);
-        each(objects, |object| {
-            let ShapeDesc::Mesh(mesh) = &object.shape else { return };
-            if self.candidates.contains_key(&Arc::as_ptr(mesh)) && !may_have_holes(object) {
-                indices = indices.saturating_add(times.saturating_mul(mesh.triangles.len() as u64));
-                if indices > MOST_INDICES {
-                    beyond.get_or_insert(object.at);
-                }
-            }
-        });
-        beyond
+        first_over(MOST_INDICES, objects, |object, mesh| {
+            let is_shared = self.candidates.contains_key(&Arc::as_ptr(mesh)) && !may_have_holes(object);
+            if is_shared { times.saturating_mul(mesh.triangles.len() as u64) } else { 0 }
+        })
     }
 
     /// How many triangles have to be stored before a mesh can be placed; `None` if it is not to be shared.
