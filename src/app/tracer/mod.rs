@@ -19,7 +19,7 @@ use super::survey::Survey;
 use crate::measure::tune;
 use crate::render::{CancelToken, Film, FrameStats, Scratch, render_frame};
 use crate::scene::Scene;
-use exchange::Shared;
+use exchange::{Exchange, Shared};
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -71,13 +71,7 @@ impl Tracer {
 
     /// Asks for a frame, in place of one that was asked for and not begun. What is refined or measured is dropped at once.
     pub fn post(&self, job: Job) {
-        let mut exchange = self.shared.lock();
-        exchange.job = Some(job);
-        if exchange.refining || exchange.search.in_frame {
-            self.cancel.cancel();
-        }
-        drop(exchange);
-        self.shared.wake.notify_one();
+        self.interrupt(|exchange| exchange.job = Some(job));
     }
 
     /// Starts a search in `scene` between the frames, in place of one that is under way; tells of it in `survey`.
@@ -91,8 +85,13 @@ impl Tracer {
     }
 
     fn inquire(&self, scene: Arc<Scene>, inquiry: Inquiry) {
+        self.interrupt(|exchange| exchange.search.asked = Some((scene, inquiry)));
+    }
+
+    /// Has the thread look at what it is asked for by `ask`, at once if it only refines or measures.
+    fn interrupt(&self, ask: impl FnOnce(&mut Exchange)) {
         let mut exchange = self.shared.lock();
-        exchange.search.asked = Some((scene, inquiry));
+        ask(&mut exchange);
         if exchange.refining || exchange.search.in_frame {
             self.cancel.cancel();
         }
