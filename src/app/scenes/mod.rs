@@ -112,6 +112,8 @@ pub struct Scenes {
     file: Option<PathBuf>,
     /// The one path of that file.
     place: Option<PathBuf>,
+    /// Milliseconds it took to load.
+    load_ms: f64,
     pending: Option<Pending>,
     /// The scene that is shown has changed on disk while another was loaded.
     outdated: bool,
@@ -142,6 +144,7 @@ impl Scenes {
             options,
             file: None,
             place: None,
+            load_ms: 0.0,
             pending: None,
             outdated: false,
             failure: None,
@@ -173,6 +176,7 @@ impl Scenes {
         self.odd = is_odd.then(|| Arc::clone(&arrival.scene));
         self.file.clone_from(&arrival.file);
         self.place.clone_from(&arrival.place);
+        self.load_ms = arrival.load_ms;
         if let Some(place) = &arrival.place {
             self.recent.opened(place);
         }
@@ -259,6 +263,11 @@ impl Scenes {
     /// The file of the scene that is shown; `None` for the built-in one.
     pub fn file(&self) -> Option<&Path> {
         self.file.as_deref()
+    }
+
+    /// Milliseconds it took to load the scene that is shown.
+    pub fn load_ms(&self) -> f64 {
+        self.load_ms
     }
 
     /// The one path of that file.

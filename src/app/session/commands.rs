@@ -4,6 +4,7 @@ use super::events::WindowHost;
 use super::{NO_ROOM, STEP, Session};
 use crate::app::input::Command;
 use crate::app::journey::Start;
+use crate::app::overlay::Change;
 use crate::app::scenes::Wish;
 use crate::app::{desktop, methods};
 use crate::scene::{self, Camera};
@@ -33,10 +34,7 @@ impl Session {
             Command::Inspect => self.inspect(),
             Command::TogglePanel => self.shown = self.shown.with_panel_toggled(),
             Command::ToggleOverlay => self.shown.overlay = !self.shown.overlay,
-            Command::Home => {
-                self.journey.stop_replay();
-                self.walker.go_home();
-            }
+            Command::Home => self.apply(Change::Home),
             Command::ToggleWalking => self.toggle_walking(now),
             Command::Screenshot => self.take_screenshot(now),
             Command::ToggleFullscreen => desktop::toggle_fullscreen(&self.window),

@@ -64,8 +64,6 @@ pub struct Session {
     scenes: Scenes,
     /// The scene as it was loaded, and as it is lit.
     scene: Arc<Scene>,
-    /// Milliseconds it took to load.
-    load_ms: f64,
     lit: Arc<Scene>,
     lighting: Lighting,
     inspection: Option<Inspection>,
@@ -122,16 +120,16 @@ impl Session {
         let wake = Arc::clone(&call);
         let mut scenes =
             Scenes::new(options.load.clone(), options.config.recent.clone(), Arc::new(move || wake(Call::Scenes)));
-        let (scene, camera, load_ms) = match &options.opening {
+        let (scene, camera) = match &options.opening {
             Opening::Scene(arrival) => {
                 scenes.show(arrival);
-                (Arc::clone(&arrival.scene), arrival.camera, arrival.load_ms)
+                (Arc::clone(&arrival.scene), arrival.camera)
             }
             Opening::Loading(load, file) => {
                 scenes.expect(load.clone(), file.clone());
                 let nothing = scene::nothing().map_err(|error| AppError::NoScene(error.into()))?;
                 let camera = nothing.cameras[0].camera;
-                (Arc::new(nothing), camera, 0.0)
+                (Arc::new(nothing), camera)
             }
         };
         let attributes = Window::default_attributes().with_title(title(&scene));
@@ -166,7 +164,6 @@ impl Session {
             lighting: Lighting::of(&scene),
             lit: Arc::clone(&scene),
             scene,
-            load_ms,
             inspection: None,
             keys: Keys::default(),
             labels: Labels::default(),
@@ -224,7 +221,7 @@ impl Session {
         if self.camerawork.is_due() {
             warnings.push("no screenshot: the changed scene was not shown any more".to_owned());
         }
-        let record = self.tally.and_then(|tally| tally.record(self.load_ms));
+        let record = self.tally.and_then(|tally| tally.record(self.scenes.load_ms()));
         AppExit { camera, settings, notes, warnings, record }
     }
 

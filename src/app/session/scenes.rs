@@ -26,7 +26,7 @@ impl Session {
         while let Some(news) = self.scenes.news() {
             match news {
                 News::Opened(arrival) => self.enter(arrival),
-                News::Reloaded(arrival) => self.replace_scene(arrival),
+                News::Reloaded(arrival) => self.replace_scene(arrival.scene),
                 News::Nothing(failed) => return Err(AppError::NoScene(failed)),
             }
         }
@@ -35,14 +35,13 @@ impl Session {
     }
 
     /// Goes to another scene.
-    pub(super) fn enter(&mut self, Arrival { scene, camera, load_ms, size, .. }: Arrival) {
+    pub(super) fn enter(&mut self, Arrival { scene, camera, size, .. }: Arrival) {
         // Ways lead through the scene that they were gone in.
         let now = Instant::now();
         self.journey.stop_replay();
         if self.finish_recording(now) {
             self.notices.tell(now, "The recording has ended: this is another scene");
         }
-        self.load_ms = load_ms;
         self.walker.enter(&scene, camera);
         self.lighting = Lighting::of(&scene);
         if let Some(size) = size.filter(|_| !self.is_placed) {
@@ -54,8 +53,7 @@ impl Session {
     }
 
     /// Shows what the scene has become, from where the walker stands.
-    pub(super) fn replace_scene(&mut self, Arrival { scene, load_ms, .. }: Arrival) {
-        self.load_ms = load_ms;
+    pub(super) fn replace_scene(&mut self, scene: Arc<Scene>) {
         let home = self.walker.home();
         let named = self.scene.cameras.iter().position(|named| named.camera == home);
         if let Some(moved) = named.and_then(|index| scene.cameras.get(index)) {
