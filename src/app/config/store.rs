@@ -48,10 +48,13 @@ impl Store {
     /// # Errors
     /// The system's reason, naming the file.
     pub fn update(&self, change: impl FnOnce(Option<Config>) -> Config) -> Result<(), PictureError> {
-        if let Some(folder) = self.path.parent() {
+        let _held = self.path.parent().and_then(|folder| {
             // Where it cannot be made, the file cannot be either, and that tells more.
             let _ = fs::create_dir_all(folder);
-        }
+            // Nobody else changes the file between this reading and this writing. Some systems lock no folders: there the last
+            // of those that write in the same moment wins.
+            fs::File::open(folder).and_then(|folder| folder.lock().map(|()| folder)).ok()
+        });
         let pending = PendingFile::create(&self.path)?;
         let (current, is_readable) = match read(&self.path) {
             Contents::Missing => (None, true),
@@ -190,6 +193,28 @@ mod tests {
         let screenshots = Some("x".repeat(MAX_BYTES as usize));
         assert!(store.update(|_| Config { screenshots, ..Config::default() }).is_err());
         assert_eq!(folder.names(), [""; 0]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn windows_that_write_at_once_lose_nothing_of_each_other() {
+        let folder = Folder::new();
+        let path = folder.path().join("raywalk/config.json");
+        std::thread::scope(|scope| {
+            for _window in 0..8 {
+                let (store, ..) = Store::open(path.clone());
+                scope.spawn(move || {
+                    for _change in 0..8 {
+                        let longer = |current: Option<Config>| {
+                            let config = current.unwrap_or_default();
+                            Config { screenshots: Some(config.screenshots.unwrap_or_default() + "x"), ..config }
+                        };
+                        store.update(longer).expect("writable");
+                    }
+                });
+            }
+        });
+        assert_eq!(Store::open(path).1.screenshots, Some("x".repeat(64)));
     }
 
     #[cfg(unix)]
