@@ -104,10 +104,14 @@ pub struct AppExit {
     pub record: Option<Record>,
 }
 
-/// Opens the window and runs until it is closed. To be called on the main thread, once in a process.
+/// Closes the window from any thread; false once it is gone.
+pub type Closer = Box<dyn Fn() -> bool + Send>;
+
+/// Opens the window and runs until it is closed, also by what is given to `closer`. To be called on the main thread, once in
+/// a process.
 ///
 /// # Errors
 /// [`AppError::NoDisplay`] when no window can be had, before anything was shown; the others when it had to close.
-pub fn run(options: AppOptions) -> Result<AppExit, AppError> {
-    viewer::run(options)
+pub fn run(options: AppOptions, closer: impl FnOnce(Closer)) -> Result<AppExit, AppError> {
+    viewer::run(options, closer)
 }

@@ -3,7 +3,7 @@
 use super::error::AppError;
 use super::session::Session;
 use super::tracer::Word;
-use super::{AppExit, AppOptions, display};
+use super::{AppExit, AppOptions, Closer, display};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -21,11 +21,15 @@ pub enum Call {
     Scenes,
     /// There is news of an errand.
     Errand,
+    /// The window has to close.
+    Close,
 }
 
 /// See [`run`](super::run).
-pub fn run(options: AppOptions) -> Result<AppExit, AppError> {
+pub fn run(options: AppOptions, closer: impl FnOnce(Closer)) -> Result<AppExit, AppError> {
     let event_loop = display::event_loop()?;
+    let proxy = event_loop.create_proxy();
+    closer(Box::new(move || proxy.send_event(Call::Close).is_ok()));
     let mut viewer = Viewer {
         options,
         proxy: event_loop.create_proxy(),
@@ -93,6 +97,7 @@ impl ApplicationHandler<Call> for Viewer {
                     session.tell_news(Instant::now());
                 }
             }
+            Call::Close => self.close(event_loop, None),
             Call::Scenes => {
                 if let Some(Err(error)) = self.session.as_mut().map(Session::on_news) {
                     self.close(event_loop, Some(error));

@@ -70,7 +70,7 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     let reason = if in_terminal {
         None
     } else {
-        match app::run(window) {
+        match app::run(window, |closer| interrupt.closes(closer)) {
             Err(AppError::NoDisplay(reason)) => Some(reason),
             Err(AppError::NoScene(failed)) => return Err(failure(failed)),
             Err(error) => return Err(error.into()),
@@ -79,7 +79,8 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
                     end.notes.iter().for_each(|text| stdout::note(text));
                     end.warnings.iter().for_each(|warning| stdout::note(&format!("warning: {warning}")));
                 }
-                return tell(&options, end.record.as_ref());
+                tell(&options, end.record.as_ref())?;
+                return interrupt.check();
             }
         }
     };
