@@ -125,8 +125,7 @@ impl Session {
                 scenes.show(arrival);
                 (Arc::clone(&arrival.scene), arrival.camera)
             }
-            Opening::Loading(load, file) => {
-                scenes.expect(load.clone(), file.clone());
+            Opening::Loading(..) => {
                 let nothing = scene::nothing().map_err(|error| AppError::NoScene(error.into()))?;
                 let camera = nothing.cameras[0].camera;
                 (Arc::new(nothing), camera)
@@ -140,6 +139,10 @@ impl Session {
         let window = Arc::new(window);
         let display = event_loop.owned_display_handle();
         let gpu = Gpu::new(&window, &display).map_err(AppError::NoDisplay)?;
+        // Not sooner: without a window the load is waited for elsewhere.
+        if let Opening::Loading(load, file) = &options.opening {
+            scenes.expect(load.clone(), file.clone());
+        }
         let millihertz = window.current_monitor().and_then(|monitor| monitor.refresh_rate_millihertz());
         let rates = Rates::new(millihertz, gpu.is_software);
         let now = Instant::now();
