@@ -28,7 +28,7 @@ impl Search<'_> {
                     }
                     let (origin, direction) = (packet.rays.origin.lane(lane), packet.rays.direction.lane(lane));
                     let mut walk = Walk::new(&self.geometry.instances, number, origin, direction, stack);
-                    while walk.next(simd, visitor.lane_limit(lane), stack, &mut met) {
+                    while walk.step(simd, visitor.lane_limit(lane), stack, &mut met) {
                         // All rays are tested: what one may meet others are likely to.
                         for place in 0..met.block.len as usize {
                             let fields = met.block.splat(simd, place);
@@ -58,7 +58,10 @@ impl Search<'_> {
                 let mut met = Met::NONE;
                 let (origin, direction) = (ray.rays.origin.lane(0), ray.rays.direction.lane(0));
                 let mut walk = Walk::new(&self.geometry.instances, number, origin, direction, stack);
-                while walk.next(simd, visitor.lane_limit(ray.lane), stack, &mut met) {
+                while walk.step(simd, visitor.lane_limit(ray.lane), stack, &mut met) {
+                    if met.block.len == 0 {
+                        continue;
+                    }
                     let indices = &met.block.indices;
                     let t_min = visitor.lane_t_min(simd, ray.lane, indices);
                     let (mask, t) = Triangle::intersect(&met.block.load(simd), &ray.rays, t_min);

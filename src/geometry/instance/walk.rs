@@ -107,47 +107,36 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Goes on to the next leaf that holds something which the ray may meet no farther away than `limit`, and leaves that
-    /// in `met`. False if there is none. Triangles that are in `met` already may be left out.
-    pub fn next<S: Simd>(&mut self, simd: S, limit: f32, stack: &mut [Pending], met: &mut Met) -> bool {
-        simd.vectorize(
-            #[inline(always)]
-            || {
-                loop {
-                    match self.left {
-                        Left::Leaves(leaf) => {
-                            if leaf >= self.leaves().len() {
-                                return false;
-                            }
-                            self.left = Left::Leaves(leaf + 1);
-                            self.look_at(simd, leaf, None, met);
-                            return true;
-                        }
-                        Left::Subtrees(0) => return false,
-                        Left::Subtrees(waiting) => {
-                            self.left = Left::Subtrees(waiting - 1);
-                            let Pending { child, near } = stack[waiting - 1];
-                            if limit < 0.0 {
-                                return false;
-                            }
-                            if near > limit {
-                                continue;
-                            }
-                            match child {
-                                Child::None | Child::Instance(_) => {}
-                                Child::Node(node) => self.open(simd, node, limit, stack),
-                                Child::Leaf(Leaf { block, .. }) => {
-                                    self.look_at(simd, block as usize, Some(limit), met);
-                                    if met.block.len > 0 {
-                                        return true;
-                                    }
-                                }
-                            }
-                        }
+    /// Goes a step on, to a node or a leaf, and leaves in `met` what the ray may meet there no farther away than `limit`:
+    /// often nothing. False if there is no step left. Triangles that are in `met` already may be left out.
+    ///
+    /// A step is little work, whatever the mesh: who walks may give up between two.
+    #[inline(always)]
+    pub fn step<S: Simd>(&mut self, simd: S, limit: f32, stack: &mut [Pending], met: &mut Met) -> bool {
+        met.block.len = 0;
+        match self.left {
+            Left::Leaves(leaf) => {
+                if leaf >= self.leaves().len() {
+                    return false;
+                }
+                self.left = Left::Leaves(leaf + 1);
+                self.look_at(simd, leaf, None, met);
+            }
+            Left::Subtrees(0) => return false,
+            Left::Subtrees(_) if limit < 0.0 => return false,
+            Left::Subtrees(waiting) => {
+                self.left = Left::Subtrees(waiting - 1);
+                match stack[waiting - 1] {
+                    Pending { near, .. } if near > limit => {}
+                    Pending { child: Child::None | Child::Instance(_), .. } => {}
+                    Pending { child: Child::Node(node), .. } => self.open(simd, node, limit, stack),
+                    Pending { child: Child::Leaf(Leaf { block, .. }), .. } => {
+                        self.look_at(simd, block as usize, Some(limit), met);
                     }
                 }
-            },
-        )
+            }
+        }
+        true
     }
 
     fn leaves(&self) -> &'a [super::shared::Triangles] {
