@@ -61,6 +61,54 @@ fn very_many_things_in_one_place_are_loaded_in_time() {
     assert_eq!(scene.geometry.instances.placed.len(), 400_000);
 }
 
+/// Where it is best to stand is looked for, and every ray there meets the boxes of all of them.
+#[test]
+fn many_triangles_without_area_are_not_looked_at_for_ever() {
+    let folder = Folder::new();
+    let mut file = File::default();
+    let corners = [[-1.0, -1.0, -1.0], [0.0, 0.0, 0.0], [1.0, 1.0, 1.0]];
+    let floor = [[-1.0, -1.0, -1.0], [-1.0, -1.0, 1.0], [1.0, -1.0, 1.0]];
+    let positions = file.vectors(&[corners, floor].concat());
+    let needles = std::iter::repeat_n([0_u16, 1, 2], 30_000);
+    let indices = file.indices(&needles.chain([[3, 4, 5]]).flatten().collect::<Vec<u16>>());
+    let places = lattice(&mut file, 120);
+    let path = folder.write(
+        "needles.gltf",
+        file.text(&format!(
+            r#""extensionsUsed": ["EXT_mesh_gpu_instancing"],
+            "meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": {positions} }}, "indices": {indices} }}] }}],
+            "nodes": [{{ "mesh": 0, "extensions": {{ "EXT_mesh_gpu_instancing":
+                {{ "attributes": {{ "TRANSLATION": {places} }} }} }} }}], "scenes": [{{ "nodes": [0] }}]"#
+        )),
+    );
+    let start = Instant::now();
+    let scene = load(&path, &LoadOptions::default()).unwrap();
+    assert!(start.elapsed() < PATIENCE, "it took {:?}", start.elapsed());
+    assert_eq!(scene.geometry.instances.placed.len(), 120);
+}
+
+/// Elements that replace others count as often as they are read.
+#[test]
+fn few_elements_that_are_replaced_very_often_are_told_of_in_time() {
+    let folder = Folder::new();
+    let mut file = File::default();
+    let indices = file.view(&[1, 0].repeat(60_000), "");
+    let values = file.view(&[0; 12].repeat(60_000), "");
+    let positions = file.accessor(format!(
+        r#"{{ "componentType": 5126, "count": 3, "type": "VEC3", "sparse": {{ "count": 60000,
+            "indices": {{ "bufferView": {indices}, "componentType": 5123 }}, "values": {{ "bufferView": {values} }} }} }}"#
+    ));
+    let primitives = vec![format!(r#"{{ "attributes": {{ "POSITION": {positions} }} }}"#); 5000].join(", ");
+    let text = file.text(&format!(
+        r#""meshes": [{{ "primitives": [{primitives}] }}], "nodes": [{{ "mesh": 0 }}], "scenes": [{{ "nodes": [0] }}]"#
+    ));
+    let path = folder.write("sparse.gltf", text);
+    let start = Instant::now();
+    let error = load(&path, &LoadOptions::default()).unwrap_err();
+    assert!(start.elapsed() < PATIENCE, "it took {:?}", start.elapsed());
+    assert!(error.to_string().contains("limit vertices"), "{error}");
+}
+
 #[test]
 fn more_triangles_than_indices_are_told_of_in_time() {
     let folder = Folder::new();

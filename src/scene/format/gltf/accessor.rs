@@ -172,7 +172,8 @@ impl<'d> Accessor<'d> {
             }
             return Ok(elements);
         }
-        self.document.take_elements(self.count as u64, pointer)?;
+        let replaced = self.sparse.as_ref().map_or(0, |sparse| sparse.count);
+        self.document.take_elements(self.count as u64 + replaced as u64, pointer)?;
         let mut elements = room(self.count, pointer)?;
         elements.resize(self.count, [T::default(); N]);
         if let Some(dense) = &self.dense {

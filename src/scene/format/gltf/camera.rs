@@ -8,6 +8,7 @@ use crate::scene::{Camera, NamedCamera};
 use glam::{DAffine3, DVec3};
 use gltf::json::camera::{Orthographic, Type};
 use gltf::json::validation::Checked;
+use std::cell::LazyCell;
 
 /// The cameras of the scene, in the order of its nodes. `bounds` tells those of what they look at.
 ///
@@ -19,6 +20,7 @@ pub fn cameras(
     report: &mut Report,
 ) -> Read<Vec<NamedCamera>> {
     let mut cameras: Vec<NamedCamera> = Vec::new();
+    let bounds = LazyCell::new(bounds);
     for &node in &nodes.order {
         let own = &document.root.nodes[node];
         let (Some(index), Some(world)) = (own.camera, &nodes.worlds[node]) else { continue };
@@ -29,7 +31,7 @@ pub fn cameras(
             (Checked::Valid(Type::Perspective), Some(perspective), _) => f64::from(perspective.yfov).to_degrees(),
             (Checked::Valid(Type::Orthographic), _, Some(orthographic)) => {
                 report.warn(&pointer, "an orthographic camera; its view is shown in perspective");
-                fov_of(orthographic, eye, forward, bounds())
+                fov_of(orthographic, eye, forward, *bounds)
             }
             _ => {
                 let message = "expected type perspective or orthographic, and an entry of that name";

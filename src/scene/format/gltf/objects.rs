@@ -161,9 +161,12 @@ fn material_of<'a>(primitive: &Primitive, materials: &'a [MaterialDesc], pointer
 /// The bounds of all objects in the world.
 pub fn bounds(objects: &[ObjectDesc]) -> Aabb {
     let mut bounds = Aabb::EMPTY;
+    let mut of_meshes = HashMap::new();
     for object in objects {
         let ShapeDesc::Mesh(mesh) = &object.shape else { continue };
-        let own = mesh.vertices.iter().fold(Aabb::EMPTY, |all, p| all.union(Aabb::from_points([p.as_vec3(); 1])));
+        let around = || mesh.vertices.iter().fold(Aabb::EMPTY, |all, p| all.union(Aabb::from_points([p.as_vec3(); 1])));
+        // Most meshes of a file are placed more than once.
+        let own = *of_meshes.entry(Arc::as_ptr(mesh)).or_insert_with(around);
         if own.is_empty() {
             continue;
         }
