@@ -288,7 +288,7 @@ mod tests {
     fn geometry() -> Geometry {
         let vertices = [corners(0.0), corners(3.0)].concat();
         let mesh = Mesh { vertices, triangles: vec![[0, 1, 2], [3, 4, 5]], ..Mesh::default() };
-        let shared = SharedMesh::new(Arc::new(mesh)).expect("there are triangles");
+        let shared = SharedMesh::new(Arc::new(mesh), &|| true).expect("there are triangles");
         let place = |object: u32| {
             let away = Transform::new(DAffine3::from_translation(DVec3::Z * f64::from(object))).expect("it is usable");
             let bounds = Aabb { min: Vec3::new(0.0, 0.0, object as f32), max: Vec3::new(4.0, 1.0, object as f32) };

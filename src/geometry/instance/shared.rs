@@ -30,13 +30,13 @@ pub(super) struct Triangles {
 
 impl SharedMesh {
     /// A tree over all triangles, even those without area: rounding may leave them some elsewhere. `None` if there are
-    /// none.
-    pub fn new(mesh: Arc<Mesh>) -> Option<Self> {
+    /// none, or when `wanted` says no.
+    pub fn new(mesh: Arc<Mesh>, wanted: &dyn Fn() -> bool) -> Option<Self> {
         let aabb = |triangle: u32| Aabb::from_points(mesh.corners(triangle).map(|i| mesh.vertices[i].as_vec3()));
         let boxes: Vec<Aabb> = (0..mesh.triangles.len() as u32).into_par_iter().map(aabb).collect();
         let bounds = boxes.iter().fold(Aabb::EMPTY, |all, &own| all.union(own));
         let (Bvh { nodes, .. }, members) =
-            bvh::build(&boxes, &vec![Some(PrimitiveKind::Triangle); boxes.len()], &|| true)?;
+            bvh::build(&boxes, &vec![Some(PrimitiveKind::Triangle); boxes.len()], wanted)?;
         let leaf = |leaf: &bvh::LeafMembers| {
             let [min, max] = [[[0.0; WIDTH]; 3]; 2];
             let mut triangles = Triangles { min, max, numbers: [0; WIDTH], len: leaf.members().len() as u32 };

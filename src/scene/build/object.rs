@@ -72,7 +72,10 @@ impl SceneBuilder {
         let elsewhere = self.sharing.totals();
         let mut parts = ObjectParts::new(&mut self.parts, elsewhere, &self.limits, id, object.at);
         let is_shared = match &object.shape {
-            ShapeDesc::Mesh(mesh) if cut.is_none() => share(&mut self.sharing, mesh, placement, id, &mut parts)?,
+            ShapeDesc::Mesh(mesh) if cut.is_none() => {
+                let wanted = || !self.progress.is_cancelled();
+                share(&mut self.sharing, mesh, placement, id, &mut parts, &wanted)?
+            }
             _ => false,
         };
         if !is_shared {
@@ -98,13 +101,14 @@ fn share(
     placement: &Placement,
     object: u32,
     parts: &mut ObjectParts,
+    wanted: &dyn Fn() -> bool,
 ) -> Outcome<bool> {
     let Some(to_store) = sharing.triangles_to_store(mesh) else { return Ok(false) };
     parts.check(to_store as u64, mesh.triangles.len() as u64)?;
     let transform = *placement.transform();
     let survey = sharing.survey(mesh, &transform);
     parts.take(survey)?;
-    let is_placed = survey.is_some_and(|survey| sharing.place(mesh, object, transform, &survey));
+    let is_placed = survey.is_some_and(|survey| sharing.place(mesh, object, transform, &survey, wanted));
     if !is_placed {
         parts.restart();
     }

@@ -189,12 +189,20 @@ impl Sharing {
 
     /// Places a mesh as an object, given what it comes to there.
     /// False if it has to be flattened after all: it is empty, or rays cannot be taken into its space.
-    pub fn place(&mut self, mesh: &Arc<Mesh>, object: u32, transform: Transform, survey: &Survey) -> bool {
+    /// So it is with `wanted` saying no, too.
+    pub fn place(
+        &mut self,
+        mesh: &Arc<Mesh>,
+        object: u32,
+        transform: Transform,
+        survey: &Survey,
+        wanted: &dyn Fn() -> bool,
+    ) -> bool {
         let Some(candidate) = self.candidates.get_mut(&Arc::as_ptr(mesh)) else { return false };
         let known = match candidate.stored {
             Some(known) => known,
             None => {
-                let Some(shared) = SharedMesh::new(Arc::clone(&candidate.mesh)) else { return false };
+                let Some(shared) = SharedMesh::new(Arc::clone(&candidate.mesh), wanted) else { return false };
                 self.totals.triangles += mesh.triangles.len() as u64;
                 self.instances.meshes.push(shared);
                 *candidate.stored.insert(self.instances.meshes.len() as u32 - 1)
