@@ -7,7 +7,7 @@ use super::End;
 use super::cells::Cells;
 use super::encoder::Encoder;
 use super::flow::Flow;
-use super::keys::{Command, Keys};
+use super::keys::{Command, Keys, Wish};
 use super::palette::Palette;
 use super::screen::Screen;
 use super::signals::{self, Watch};
@@ -35,12 +35,12 @@ use termina::{Event, EventReader};
 const INTERVAL: Duration = Duration::from_millis(33);
 /// Between two steps of the walker.
 const STEP: Duration = Duration::from_millis(16);
-/// Longest step in seconds: whoever comes back from a stall should not find themselves elsewhere.
-const MAX_STEP_SECONDS: f64 = 0.25;
+/// Most that is walked at once: whoever comes back from a stall should not find themselves elsewhere.
+const MAX_WALK: Duration = Duration::from_millis(250);
 /// Degrees of turn for a drag over one pixel of the picture.
 const DRAG: f64 = 1.5;
 /// At the end, answers under way are waited for this long: the shell would take them for something typed.
-const FAREWELL: Duration = Duration::from_millis(500);
+const FAREWELL: Duration = Duration::from_secs(2);
 /// Most columns and rows of the picture; the rest of a larger terminal stays empty.
 const MAX_CELLS: (u16, u16) = (1000, 500);
 
@@ -161,6 +161,7 @@ impl Session {
         while self.flow.is_waiting() {
             match messages.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
                 Ok(Message::Input(event, _)) if is_answer(&event) => self.flow.answered(),
+                Ok(Message::Tracer(Word::Frame)) => self.fetch_frame(),
                 Ok(Message::InputGone(_)) | Err(_) => return,
                 Ok(_) => {}
             }
@@ -243,18 +244,29 @@ impl Session {
         self.walker.look(degrees / self.walker.sensitivity);
     }
 
-    /// Walks and turns up to `now`, as far as keys were held until here.
+    /// Walks and turns up to `now`, as far as keys were held until here: step by step, so that a key that has faded out by
+    /// now counts for the time before.
     fn step(&mut self, now: Instant) {
-        let wish = self.keys.wish(now);
-        if let Some(before) = self.stepped {
-            let wish = wish.unwrap_or_default();
-            let seconds = now.saturating_duration_since(before).as_secs_f64().min(MAX_STEP_SECONDS);
-            // Feet need all the time there is: to fall as well.
-            let pace = if self.walker.is_walking() { 1.0 } else { wish.pace };
-            self.walker.advance(&self.scene.geometry, wish.motion, seconds * pace);
-            self.turn(wish.turn * seconds);
+        if let Some(mut at) = self.stepped {
+            let end = now.min(at + MAX_WALK);
+            while at < end {
+                let next = end.min(at + STEP);
+                let wish = self.keys.wish(at);
+                if wish.is_none() && !self.walker.is_under_way() {
+                    break;
+                }
+                self.walk_for((next - at).as_secs_f64(), wish.unwrap_or_default());
+                at = next;
+            }
         }
-        self.stepped = (wish.is_some() || self.walker.is_under_way()).then_some(now);
+        self.stepped = (self.keys.wish(now).is_some() || self.walker.is_under_way()).then_some(now);
+    }
+
+    fn walk_for(&mut self, seconds: f64, wish: Wish) {
+        // Feet need all the time there is: to fall as well.
+        let pace = if self.walker.is_walking() { 1.0 } else { wish.pace };
+        self.walker.advance(&self.scene.geometry, wish.motion, seconds * pace);
+        self.turn(wish.turn * seconds);
     }
 
     /// Moves on, asks for frames, shows what there is, and says when to be called again at the latest.
@@ -346,6 +358,7 @@ impl Session {
         self.screen.resume()?;
         self.keys.clear();
         self.encoder.forget();
+        self.is_stale = true;
         self.size = self.screen.size();
         Ok(())
     }

@@ -11,7 +11,7 @@ mod unix {
     use std::time::Duration;
 
     /// How long the walk may take to end. It waits for a terminal that takes nothing, as after Ctrl-S.
-    const PATIENCE: Duration = Duration::from_secs(1);
+    const PATIENCE: Duration = Duration::from_secs(5);
 
     /// Listens until dropped.
     #[derive(Debug)]
