@@ -28,6 +28,8 @@ use std::path::Path;
 
 /// Largest file read as a path, in bytes.
 const MAX_BYTES: u64 = 64 << 20;
+/// Most frames from the first key to the last: more than anyone waits for.
+const MAX_FRAMES: f64 = 1e8;
 /// So many keys make a file that can be read, whatever numbers are in them.
 pub const READABLE_KEYS: usize = 250_000;
 
@@ -136,6 +138,10 @@ impl CameraPath {
                 return wrong(format!("/keys/{i}/t"), "expected a time after that of the key before");
             }
         }
+        let last = path.keys.len() - 1;
+        if (path.keys[last].t - path.keys[0].t) * path.fps > MAX_FRAMES {
+            return wrong(format!("/keys/{last}/t"), "the path has more than 100 million frames; expected fewer");
+        }
         let mut up = path.up;
         for key in &mut path.keys {
             up = key.up.or(up);
@@ -234,6 +240,17 @@ mod tests {
             assert!((camera.eye.x - x).abs() < 1e-6, "frame {frame}: {camera:?}");
             assert!((camera.fov - fov).abs() < 1e-4, "frame {frame}: {camera:?}");
             assert_eq!(camera.up, Vec3::X);
+        }
+    }
+
+    #[test]
+    fn a_path_without_end_is_refused() {
+        for (end, is_read) in [("1.6e6", true), ("1e20", false), ("3e38", false)] {
+            let text = PATH.replace("2.5,", &format!("{end},")).replace("\"fps\": 10,", "");
+            match parse(&text) {
+                Ok(path) => assert!(is_read && path.frame_count() > 95_000_000, "{end}"),
+                Err(error) => assert!(!is_read && error.to_string().contains("/keys/2/t"), "{end}: {error}"),
+            }
         }
     }
 
