@@ -3,8 +3,10 @@
 use super::{Config, UI_SCALES, WindowState};
 use crate::app::bookmarks::BookmarkShelf;
 use crate::app::scenes::RecentFiles;
+use crate::settings::{ROWS, Settings};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
+use std::collections::BTreeMap;
 
 /// Most entries that are named in one line, and so much of a name.
 const MOST_NAMED: usize = 4;
@@ -57,7 +59,7 @@ impl Config {
         let recent: Value = entries.take("recent").unwrap_or_default();
         let bookmarks: Value = entries.take("bookmarks").unwrap_or_default();
         Ok(Self {
-            settings: texts(settings, faults),
+            settings: read_settings(settings, faults),
             window: read_window(window, faults),
             ui_scale: f32::clamp(ui_scale, *UI_SCALES.start(), *UI_SCALES.end()),
             sensitivity: sensitivity.filter(|degrees| {
@@ -93,16 +95,20 @@ impl Entries<'_> {
     }
 }
 
-/// The entries of a map that are text.
-fn texts(map: Map<String, Value>, faults: &mut Faults) -> std::collections::BTreeMap<String, String> {
-    let text = |(name, value): (String, Value)| match value {
-        Value::String(text) => Some((name, text)),
+/// Settings by their names, without values that those do not take. Names may be those of a later version.
+fn read_settings(map: Map<String, Value>, faults: &mut Faults) -> BTreeMap<String, String> {
+    let takes = |name: &str, text: &str| {
+        let row = ROWS.iter().find(|row| row.name == name);
+        row.is_none_or(|row| (row.set)(&mut Settings::default(), text).is_ok())
+    };
+    let setting = |(name, value): (String, Value)| match value {
+        Value::String(text) if takes(&name, &text) => Some((name, text)),
         _ => {
             faults.note(format_args!("settings.{name}"));
             None
         }
     };
-    map.into_iter().filter_map(text).collect()
+    map.into_iter().filter_map(setting).collect()
 }
 
 /// A window; `None` where there is none of a size that can be opened.
@@ -154,6 +160,15 @@ mod tests {
         assert_eq!((odd.get(1), odd.get(2), odd.get(3)), (None, Some(Camera::default()), None));
         let faults = faults.expect("there are some");
         assert!(faults.contains("panel") && faults.ends_with("more") && !faults.contains('\n'), "{faults}");
+    }
+
+    #[test]
+    fn settings_without_a_value_that_they_take_are_faults() {
+        let (config, faults) = read(
+            r#"{ "settings": { "shadows": "maybe", "stride": "7", "fill": "color", "of-a-later-version": "7" } }"#,
+        );
+        assert_eq!(config.settings.keys().collect::<Vec<_>>(), ["fill", "of-a-later-version"]);
+        assert_eq!(faults.as_deref(), Some("settings.shadows, settings.stride"));
     }
 
     #[test]

@@ -6,9 +6,13 @@ use crate::picture::{PendingFile, PictureError};
 use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// Larger files are none of ours.
 const MAX_BYTES: u64 = 1 << 20;
+/// How long a folder is waited for that another window writes to, and how long between two looks.
+const PATIENCE: Duration = Duration::from_secs(2);
+const PAUSE: Duration = Duration::from_millis(2);
 /// Names for what cannot be read, beside each other.
 const MOST_BROKEN: u32 = 99;
 
@@ -53,7 +57,7 @@ impl Store {
             let _ = fs::create_dir_all(folder);
             // Nobody else changes the file between this reading and this writing. Some systems lock no folders: there the last
             // of those that write in the same moment wins.
-            fs::File::open(folder).and_then(|folder| folder.lock().map(|()| folder)).ok()
+            fs::File::open(folder).ok().filter(lock)
         });
         let pending = PendingFile::create(&self.path)?;
         let (current, is_readable) = match read(&self.path) {
@@ -72,6 +76,18 @@ impl Store {
             sink.flush()?;
             if is_readable { Ok(()) } else { Ok(put_aside(&self.path)?) }
         })
+    }
+}
+
+/// Locks a folder, unless somebody holds it for long: one that was stopped there should stop nobody else.
+fn lock(folder: &fs::File) -> bool {
+    let deadline = Instant::now() + PATIENCE;
+    loop {
+        match folder.try_lock() {
+            Ok(()) => return true,
+            Err(fs::TryLockError::WouldBlock) if Instant::now() < deadline => std::thread::sleep(PAUSE),
+            Err(_) => return false,
+        }
     }
 }
 
@@ -178,7 +194,7 @@ mod tests {
     #[test]
     fn what_is_no_text_is_a_warning() {
         let folder = Folder::new();
-        let path = folder.write("config.json", &[0xff, 0xfe]);
+        let path = folder.write("config.json", [0xff, 0xfe]);
         assert!(Store::open(path.clone()).2.is_some(), "no text at all");
         let (store, _, warning) = Store::open(folder.path().to_owned());
         assert!(warning.is_some() && store.update(|_| scaled(2.0)).is_err(), "a folder");
