@@ -24,7 +24,7 @@ pub use load::{Arrival, Failed, Load, Outcome, place_of};
 pub use recent::RecentFiles;
 pub use report::{Failure, Loading, Report};
 
-use crate::scene::{self, LoadOptions, Progress, Scene, Warning};
+use crate::scene::{self, Limits, LoadOptions, Progress, Scene, Warning};
 use dialog::Answer;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -171,7 +171,8 @@ impl Scenes {
     pub fn show(&mut self, arrival: &Arrival) {
         self.has_scene = true;
         self.outdated = false;
-        self.failure = None;
+        // That another scene could not be opened stays true while this one is loaded again.
+        self.failure.take_if(|failure| failure.file == arrival.file);
         let is_odd = !arrival.scene.warnings.is_empty() && arrival.scene.warnings != self.dismissed;
         self.odd = is_odd.then(|| Arc::clone(&arrival.scene));
         self.file.clone_from(&arrival.file);
@@ -196,13 +197,18 @@ impl Scenes {
         }
     }
 
+    /// Loads what is shown once more if it has changed while another scene was loaded.
+    fn catch_up(&mut self) {
+        if std::mem::take(&mut self.outdated) {
+            self.reload();
+        }
+    }
+
     /// Ends the load under way; false where there is none.
     pub fn cancel(&mut self) -> bool {
         let Some(pending) = self.pending.take() else { return false };
         pending.load.progress().cancel();
-        if self.outdated {
-            self.reload();
-        }
+        self.catch_up();
         true
     }
 
@@ -275,9 +281,19 @@ impl Scenes {
         self.place.as_deref()
     }
 
+    /// How much the scenes that are loaded may ask for.
+    pub fn limits(&self) -> &Limits {
+        &self.options.limits
+    }
+
     /// The files that were opened last.
     pub fn recent(&self) -> &RecentFiles {
         &self.recent
+    }
+
+    /// Whether a scene is shown: not before the first is loaded.
+    pub fn has_scene(&self) -> bool {
+        self.has_scene
     }
 
     /// Whether something is being loaded.
@@ -376,9 +392,7 @@ impl Scenes {
             Errand::First => return Some(News::Nothing(failed)),
             Errand::Open => {
                 self.failure = Some(Failure::new(format!("{name} could not be opened"), &failed, file));
-                if self.outdated {
-                    self.reload();
-                }
+                self.catch_up();
             }
             Errand::Reload => {
                 let title = format!("{name} could not be reloaded; it is shown as it was");

@@ -117,6 +117,8 @@ fn bitmap(grey: u8) -> Vec<u8> {
         bytes.extend(word.to_le_bytes());
     }
     bytes.extend([grey, grey, grey, 0]);
+    // Of another size each: two may be written within what the clock of files can tell apart.
+    bytes.resize(bytes.len() + usize::from(grey), 0);
     bytes
 }
 
@@ -148,6 +150,35 @@ fn a_cancelled_load_is_forgotten() {
     scenes.open(&file);
     opened(&mut scenes, &woken);
     assert!(scenes.report(Instant::now()).failure.is_none() && scenes.news().is_none());
+}
+
+#[test]
+fn that_another_file_cannot_be_opened_stays_told_while_the_scene_is_reloaded() {
+    let folder = Folder::new();
+    let (file, broken) = (folder.write("ball.json", ball("[0.5, 0, 0]")), folder.write("broken.json", "{"));
+    let (mut scenes, woken) = scenes();
+    scenes.open(&file);
+    opened(&mut scenes, &woken);
+    scenes.open(&broken);
+    assert!(wait(&mut scenes, &woken, |scenes| scenes.failure.is_some()).is_none());
+    folder.write("ball.json", ball("[0.25, 0, 0]"));
+    assert_eq!(red(&reloaded(&mut scenes, &woken)), 0.25);
+    let failure = scenes.report(Instant::now()).failure.expect("it cannot be opened still");
+    assert!(failure.title.contains("broken.json"), "{}", failure.title);
+}
+
+/// An edit of the scene that is shown, seen while another one is opened, is loaded after that: once.
+#[test]
+fn a_reload_that_had_to_wait_can_be_stopped() {
+    let folder = Folder::new();
+    let (file, other) = (folder.write("ball.json", ball("[0.5, 0, 0]")), folder.write("other.json", ball("1")));
+    let (mut scenes, woken) = scenes();
+    scenes.open(&file);
+    opened(&mut scenes, &woken);
+    scenes.open(&other);
+    scenes.outdated = true;
+    assert!(scenes.cancel() && scenes.is_loading(), "the edit is loaded");
+    assert!(scenes.cancel() && !scenes.is_loading(), "and that is stopped");
 }
 
 #[test]
