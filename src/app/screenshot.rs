@@ -6,7 +6,7 @@ use super::maps::Map;
 use super::tracer::Job;
 use crate::picture::{EightBit, Note, NumberedName, PendingFile, write_annotated};
 use crate::render::Film;
-use crate::scene::{Camera, NamedCamera};
+use crate::scene::{Camera, Limits, NamedCamera};
 use crate::settings::{ROWS, Row, Settings, Supersample};
 use glam::Vec3;
 use std::ffi::OsStr;
@@ -36,6 +36,8 @@ pub struct Place {
     pub cameras: Vec<NamedCamera>,
     /// Lights that were turned, in words.
     pub turned: Vec<String>,
+    /// How the scene was loaded.
+    pub limits: Limits,
 }
 
 /// A picture on display, and what made it.
@@ -162,6 +164,10 @@ fn notes(shot: &Shot) -> Vec<Note> {
         let turned = place.turned.join("; ");
         notes.push(("raywalk:lights", format!("{turned}; the command makes the picture with all as in the file")));
     }
+    let Camera { near, far, .. } = shot.job.camera;
+    if camera_alike(shot).is_none() {
+        notes.push(("raywalk:clipping", format!("from {near} to {far}, which the command leaves out")));
+    }
     if let Some(beside) = &shot.job.aspect.beside {
         notes.push(("raywalk:beside", format!("right of the divider: {}", beside.flags())));
     }
@@ -184,13 +190,12 @@ fn picture_rows() -> impl Iterator<Item = &'static Row> {
 fn command(shot: &Shot, settings: &Settings) -> String {
     let place = &shot.place;
     let vector = |vector: Vec3| format!("{},{},{}", vector.x, vector.y, vector.z);
-    let Camera { eye, look_at, up, fov, near, far } = shot.job.camera;
+    let Camera { eye, look_at, up, fov, .. } = shot.job.camera;
     let mut words = vec!["raywalk".to_owned(), "render".to_owned()];
     words.extend(place.file.as_ref().map(|file| quoted(file.as_os_str())));
     words.push(format!("--size {}x{}", shot.picture.width, shot.picture.height));
-    // Near and far have no flags of their own: they come with a camera of the scene.
-    let is_alike = |camera: &NamedCamera| (camera.camera.near, camera.camera.far) == (near, far);
-    if let Some(index) = place.cameras.iter().position(is_alike).filter(|index| *index > 0) {
+    words.extend(place.limits.changed().map(|(name, value)| format!("--limit {name}={value}")));
+    if let Some(index) = camera_alike(shot).filter(|index| *index > 0) {
         words.push(format!("--camera {}", quoted(place.cameras[index].name.as_ref())));
     }
     words.push(format!("--eye {} --look-at {} --up {} --fov {fov}", vector(eye), vector(look_at), vector(up)));
@@ -201,6 +206,12 @@ fn command(shot: &Shot, settings: &Settings) -> String {
         words.push(format!("--map {}", shot.job.aspect.map.name()));
     }
     words.join(" ")
+}
+
+/// The first camera of the scene that sees as near and as far: these have no flags of their own.
+fn camera_alike(shot: &Shot) -> Option<usize> {
+    let Camera { near, far, .. } = shot.job.camera;
+    shot.place.cameras.iter().position(|NamedCamera { camera, .. }| (camera.near, camera.far) == (near, far))
 }
 
 /// A word as a shell takes it, in ASCII: text of that kind is what every program reads of a PNG.
@@ -259,6 +270,7 @@ mod tests {
             file: file.map(PathBuf::from),
             cameras: vec![named("default", 0.5), named("back door", 0.0)],
             turned: Vec::new(),
+            limits: Limits::default(),
         }
     }
 
@@ -275,6 +287,9 @@ mod tests {
         assert_eq!(refined, format!("raywalk render {view} --supersample 16"));
         let first = Place { cameras: place(None).cameras.split_off(1), ..place(None) };
         assert!(!of(shot(None), first).contains("--camera"));
+        let mut limits = Limits::default();
+        limits.set("nodes", "7").expect("allowed");
+        assert!(of(shot(None), Place { limits, ..place(None) }).contains("--size 8x4 --limit nodes=7 --camera"));
         let of_file = |file| of(shot(None), place(Some(file)));
         assert!(of_file("it's.json").starts_with(r"raywalk render 'it'\''s.json' --size"));
         assert!(of_file("d'été\n.json").starts_with(r"raywalk render $'d\'\303\251t\303\251\012.json' --size"));

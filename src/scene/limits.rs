@@ -128,6 +128,13 @@ impl Limits {
         Ok(())
     }
 
+    /// The limits that are not as by default: their names and values, as [`set`](Self::set) takes them.
+    pub fn changed(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        let mut limits = self.clone();
+        let value = move |row: &Row| (row.name, *(row.field)(&mut limits));
+        ROWS.iter().map(value).zip(ROWS).filter(|((_, value), row)| *value != row.default).map(|(limit, _)| limit)
+    }
+
     /// The names of all limits.
     pub fn names() -> impl Iterator<Item = &'static str> {
         ROWS.iter().map(|row| row.name)
@@ -156,6 +163,7 @@ mod tests {
             let changed = ROWS.iter().map(|row| *(row.field)(&mut limits) == 7).collect::<Vec<_>>();
             assert_eq!(changed.iter().filter(|c| **c).count(), 1, "{name}");
             assert!(changed[i], "{name}");
+            assert_eq!(limits.changed().collect::<Vec<_>>(), [(name, 7)]);
         }
     }
 

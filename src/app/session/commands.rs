@@ -17,6 +17,9 @@ impl Session {
     /// Does what a key asks for; [`Command::Quit`] is up to the caller.
     pub(super) fn obey(&mut self, now: Instant, command: Command) {
         match command {
+            Command::StoreBookmark(_) | Command::GoToBookmark(_) | Command::Screenshot if !self.scenes.has_scene() => {
+                self.notices.warn(now, "Not before the scene is loaded");
+            }
             Command::ReleasePointer if self.capture.is_active() => {
                 self.journey.stop_replay();
                 self.capture.release(&WindowHost(&self.window));
@@ -91,7 +94,11 @@ impl Session {
 
     /// Ends the recording and has it written, if there is one.
     pub(super) fn finish_recording(&mut self, now: Instant) -> bool {
-        let how_to = format!(": {}", self.labels.of("P replays it"));
+        self.end_recording(now, format!(": {}", self.labels.of("P replays it")))
+    }
+
+    /// The same; `how_to` is what to say of a replay.
+    pub(super) fn end_recording(&mut self, now: Instant, how_to: String) -> bool {
         let (camera, size) = (self.walker.camera(), self.walker.surroundings());
         let errand = self.journey.finish(now, camera, self.path_folders(), size, how_to);
         let was_recording = errand.is_some();

@@ -45,6 +45,7 @@ impl Session {
             file: self.scenes.file().map(Path::to_owned),
             cameras: self.scene.cameras.clone(),
             turned: self.lighting.dials().iter().filter_map(Dial::turned).collect(),
+            limits: self.scenes.limits().clone(),
         };
         let is_kept = self.posted.as_ref() == Some(job);
         let shot = Shot::new(film, job, *samples, place);

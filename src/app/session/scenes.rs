@@ -6,6 +6,7 @@ use crate::app::capture::PointerHost;
 use crate::app::config::WindowState;
 use crate::app::error::AppError;
 use crate::app::inspection;
+use crate::app::journey::Journey;
 use crate::app::lighting::Lighting;
 use crate::app::lowering::presets_below;
 use crate::app::scenes::{Arrival, News, Wish};
@@ -38,10 +39,10 @@ impl Session {
     pub(super) fn enter(&mut self, Arrival { scene, camera, size, .. }: Arrival) {
         // Ways lead through the scene that they were gone in.
         let now = Instant::now();
-        self.journey.stop_replay();
-        if self.finish_recording(now) {
+        if self.end_recording(now, String::new()) {
             self.notices.tell(now, "The recording has ended: this is another scene");
         }
+        self.journey = Journey::default();
         self.walker.enter(&scene, camera);
         self.lighting = Lighting::of(&scene);
         if let Some(size) = size.filter(|_| !self.is_placed) {
