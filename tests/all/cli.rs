@@ -502,7 +502,7 @@ fn ctrl_c_is_exit_130_and_leaves_nothing() {
         .spawn()
         .expect("the program starts");
     // The temporary file of the picture is the sign that frames are being traced.
-    let started = (0..1000).any(|_| {
+    let started = (0..6000).any(|_| {
         std::thread::sleep(Duration::from_millis(10));
         bench.names().len() > 2
     });

@@ -6,8 +6,8 @@ use raywalk::settings::Settings;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Longest time that a file may take.
-pub const PATIENCE: Duration = Duration::from_secs(5);
+/// Longest time that a file may take: on a machine that has nothing else to do it is to be a fourth of that.
+pub const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Files that hold nothing but points and lines.
 const NOTHING_TO_DRAW: [&str; 2] = ["testline.obj", "testpoints.obj"];

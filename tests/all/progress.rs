@@ -66,18 +66,24 @@ fn a_load_that_was_cancelled_before_it_began_is_cancelled_in_every_format() {
 
 /// How long a load of `file` goes on after it is cancelled while it says that it is busy with `step`.
 fn seconds_after_cancel(file: &Path, step: &str) -> f64 {
-    let progress = Progress::default();
-    std::thread::scope(|threads| {
-        let loading = threads.spawn(|| load(file, &told(&progress)).map(|scene| scene.objects.len()));
-        while !progress.step().what.starts_with(step) && !loading.is_finished() {
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        let start = Instant::now();
-        progress.cancel();
-        let outcome = loading.join().expect("a load does not panic");
-        assert!(matches!(outcome, Err(SceneError::Cancelled { .. })), "{step}: {outcome:?}");
-        start.elapsed().as_secs_f64()
-    })
+    // A load may be past that before it is noticed.
+    let seconds = (0..100).find_map(|_| {
+        let progress = Progress::default();
+        std::thread::scope(|threads| {
+            let loading = threads.spawn(|| load(file, &told(&progress)).map(|scene| scene.objects.len()));
+            while !progress.step().what.starts_with(step) && !loading.is_finished() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            let start = Instant::now();
+            progress.cancel();
+            match loading.join().expect("a load does not panic") {
+                Err(SceneError::Cancelled { .. }) => Some(start.elapsed().as_secs_f64()),
+                Ok(_) => None,
+                Err(error) => panic!("{step}: {error}"),
+            }
+        })
+    });
+    seconds.unwrap_or_else(|| panic!("{step}: no load can be cancelled"))
 }
 
 #[test]

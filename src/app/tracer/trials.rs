@@ -124,9 +124,13 @@ fn at_rest(width: u32, x: f32) -> Job {
     job
 }
 
-/// The frames that come until none comes for a while.
-fn frames(tracer: &Tracer, words: &Receiver<Word>) -> Vec<TracedFrame> {
-    let mut frames = Vec::new();
+/// The frames that come until one of `samples` did, and those that come after it for a while.
+fn frames(tracer: &Tracer, words: &Receiver<Word>, samples: Option<u32>) -> Vec<TracedFrame> {
+    let mut frames: Vec<TracedFrame> = Vec::new();
+    while frames.last().is_none_or(|frame| frame.samples != samples) {
+        assert_eq!(words.recv_timeout(SOON), Ok(Word::Frame));
+        frames.extend(tracer.take());
+    }
     while words.recv_timeout(4 * at_rest::REST).is_ok() {
         frames.extend(tracer.take());
     }
@@ -152,7 +156,7 @@ fn a_view_at_rest_becomes_supersample_16_byte_for_byte_and_then_nothing_is_trace
             lowering: Lowering::NONE,
             aspect: Aspect::default(),
         });
-        let frames = frames(&tracer, &words);
+        let frames = frames(&tracer, &words, Some(16));
         let picture = |supersample: Supersample| {
             let mut film = Film::new(width, height, Planes::default());
             // At rest nothing is enlarged.
@@ -185,7 +189,7 @@ fn nothing_is_refined_where_that_is_not_wanted_or_not_needed() {
     enough.settings.supersample = Supersample::Grid { side: 5 };
     for job in [job(4, 0.0), enough] {
         tracer.post(job);
-        assert_eq!(frames(&tracer, &words).len(), 1);
+        assert_eq!(frames(&tracer, &words, None).len(), 1);
     }
     assert_eq!(traced.load(Ordering::SeqCst), 2);
 }
@@ -224,9 +228,16 @@ fn while_it_moves_nothing_is_refined() {
         FrameStats { completed: true, ..FrameStats::default() }
     };
     let (tracer, _words) = start(render, CancelToken::default());
+    let mut before = Instant::now();
     for step in 0..30 {
+        let now = Instant::now();
         tracer.post(at_rest(4, step as f32));
-        assert_eq!(begins.recv_timeout(SOON), Ok(None));
+        let passed = before.elapsed();
+        while begins.recv_timeout(SOON).expect("a frame or a pass").is_some() {
+            // This thread was held up: it did rest.
+            assert!(passed >= at_rest::REST, "refined {passed:?} after a step");
+        }
+        before = now;
         std::thread::sleep(Duration::from_millis(10));
     }
 }
