@@ -151,7 +151,7 @@ pub const HELP: &[(&str, &str)] = &[
     ("G", "walk or fly"),
     ("Home", "back to the start"),
     ("F1", "help"),
-    ("Tab", "this panel"),
+    ("Tab", "open or close the panel"),
     ("1 to 9", "go to a bookmark; with Ctrl, set it"),
     ("Ctrl+C, Ctrl+V", "copy, paste the camera"),
     ("R, P", "record a camera path, replay it"),

@@ -32,7 +32,6 @@ pub fn inspect(scene: &Scene, camera: &Camera, size: (u32, u32), place: DVec2) -
     let material = scene.materials.get(object.material as usize)?;
     let mut facts = vec![
         ("kind", format!("{}, object {} of {}", object.kind, pick.id.object + 1, scene.objects.len())),
-        ("distance", format!("{} m", rounded(pick.distance))),
         ("size", if object.bounds.is_finite() { vector(object.bounds.size()) } else { "endless".to_owned() }),
     ];
     facts.extend(part(scene, pick.id, object.kind));
@@ -122,6 +121,11 @@ fn rounded(value: f32) -> String {
 }
 
 impl Inspection {
+    /// How far what was pointed at is from a camera's eye, in words.
+    pub fn distance(&self, camera: &Camera) -> String {
+        format!("{} m", rounded(self.point.distance(camera.eye)))
+    }
+
     /// The edges of its bounds, as far as `camera` shows them in a picture of `size`; places as for [`inspect`].
     pub fn outline(&self, camera: &Camera, size: (u32, u32)) -> Vec<[DVec2; 2]> {
         if !self.bounds.is_finite() || self.bounds.is_empty() {
@@ -195,7 +199,7 @@ mod tests {
     fn it_tells_name_material_distance_and_triangles() {
         let scene = scene();
         let ball = at(&scene, 0.5, 0.5).expect("the ball");
-        assert_eq!((ball.title.as_str(), fact(&ball, "distance")), ("ball", "4 m"));
+        assert_eq!((ball.title.as_str(), ball.distance(&scene.cameras[0].camera).as_str()), ("ball", "4 m"));
         assert_eq!((fact(&ball, "material"), fact(&ball, "metallic"), fact(&ball, "roughness")), ("gold", "1", "0.25"));
         assert_eq!(fact(&ball, "color"), "1 0.8 0.3");
         assert!(ball.point.abs_diff_eq(Vec3::Z, 1e-5), "{}", ball.point);

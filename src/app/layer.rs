@@ -114,7 +114,7 @@ impl Layer {
 
     /// Whether keys are the overlay's: text is being typed, or a menu is open.
     pub fn takes_keys(&self) -> bool {
-        self.context.egui_wants_keyboard_input() || egui::Popup::is_any_open(&self.context)
+        self.context.text_edit_focused() || egui::Popup::is_any_open(&self.context)
     }
 
     /// Runs the overlay at the surface's `size`. `None` where the window is too small for one.

@@ -140,9 +140,9 @@ pub fn errand(shot: Shot, name: NumberedName) -> Errand {
         Some(match PendingFile::beside(&name.of(1)).and_then(write) {
             Ok(path) => {
                 let path = std::path::absolute(&path).unwrap_or(path);
-                News::Done(format!("screenshot: {}", path.display()))
+                News::Done(format!("Screenshot: {}", path.display()))
             }
-            Err(error) => News::Problem(format!("no screenshot: {error}")),
+            Err(error) => News::Problem(format!("No screenshot: {error}")),
         })
     })
 }
@@ -334,7 +334,7 @@ mod tests {
         for number in [2, 3] {
             let news = errand(Shot { place: place.clone(), ..shot(Some(7)) }, name.clone())();
             let path = folder.path().join(format!("walk-000{number}.png"));
-            assert_eq!(news, Some(News::Done(format!("screenshot: {}", path.display()))));
+            assert_eq!(news, Some(News::Done(format!("Screenshot: {}", path.display()))));
             let file = std::io::BufReader::new(std::fs::File::open(path).expect("there"));
             let reader = png::Decoder::new(file).read_info().expect("a PNG");
             let texts = &reader.info().uncompressed_latin1_text;

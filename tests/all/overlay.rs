@@ -635,13 +635,13 @@ fn a_thing_that_was_pointed_at_is_told_of() {
     let mut panel = Panel::new();
     panel.inspection = Some(Inspection {
         title: "ball".to_owned(),
-        facts: vec![("distance", "4 m".to_owned()), ("material", "gold".to_owned())],
+        facts: vec![("material", "gold".to_owned())],
         point: glam::Vec3::Z,
         bounds: Aabb { min: glam::Vec3::NEG_ONE, max: glam::Vec3::ONE },
     });
     let mut harness = panel.harness();
     harness.run();
-    for label in ["ball", "distance", "4 m", "gold"] {
+    for label in ["ball", "distance", "4 m", "material", "gold"] {
         harness.get_by_label(label);
     }
     harness.get_by_label("Close").click();

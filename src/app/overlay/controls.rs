@@ -5,7 +5,7 @@ use crate::app::UI_SCALES;
 use crate::app::walker::{EYE_HEIGHT_RANGE, FOV_RANGE};
 use crate::math::simd;
 use crate::settings::{Choice, Kind, ROWS, Row, Settings};
-use egui::{ComboBox, DragValue, Grid, Response, RichText, Slider, Ui};
+use egui::{ComboBox, DragValue, Grid, Response, RichText, Slider, SliderClamping, Ui};
 
 /// Whole-number ranges wider than this get a number to drag: on a slider every pixel would be a leap.
 const WIDEST_SLIDER: f64 = 128.0;
@@ -138,7 +138,12 @@ pub fn view(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
         .then(|| changes.push(Change::Speed(speed)));
         let mut fov = view.fov;
         labelled(ui, "field of view", "vertical, in degrees", |ui| {
-            ui.add(Slider::new(&mut fov, FOV_RANGE).custom_formatter(|fov, _| rounded(fov)).suffix("°"))
+            ui.add(
+                Slider::new(&mut fov, FOV_RANGE)
+                    .clamping(SliderClamping::Edits)
+                    .custom_formatter(|fov, _| rounded(fov))
+                    .suffix("°"),
+            )
         })
         .then(|| changes.push(Change::Fov(fov)));
         let mut sensitivity = view.sensitivity;

@@ -40,8 +40,10 @@ pub fn show(ui: &Ui, view: &View<'_>, available: Rect, changes: &mut Vec<Change>
     let [left, right] = [view.left, &split.right].map(|settings| name(settings, view.scene));
     let [left_ms, right_ms] = split.milliseconds;
     let y = available.bottom() - GAP;
-    words(ui, pos2(x - GAP, y), Align2::RIGHT_BOTTOM, &format!("{left} | {left_ms:.1} ms"));
-    words(ui, pos2(x + GAP, y), Align2::LEFT_BOTTOM, &format!("{right} | {right_ms:.1} ms"));
+    // Each within its own side, as far as there is room.
+    let [left_side, right_side] = [available.with_max_x(x), available.with_min_x(x)];
+    words(ui, left_side, pos2(x - GAP, y), Align2::RIGHT_BOTTOM, &format!("{left} | {left_ms:.1} ms"));
+    words(ui, right_side, pos2(x + GAP, y), Align2::LEFT_BOTTOM, &format!("{right} | {right_ms:.1} ms"));
 }
 
 /// The line, dark beside light so that it shows on anything, and a knob.
@@ -54,10 +56,12 @@ fn line(ui: &Ui, grip: Rect, is_used: bool) {
     painter.rect_filled(knob, 4.0, light);
 }
 
-/// Words on a plate of their own.
-fn words(ui: &Ui, at: egui::Pos2, align: Align2, text: &str) {
+/// Words on a plate of their own, of which only what lies within `side` is seen.
+fn words(ui: &Ui, side: Rect, at: egui::Pos2, align: Align2, text: &str) {
     let id = egui::Id::unique(("side", align.x()));
-    egui::Area::new(id).order(Order::Middle).pivot(align).fixed_pos(at).interactable(false).show(ui.ctx(), |ui| {
+    let plate = egui::Area::new(id).order(Order::Middle).pivot(align).fixed_pos(at).constrain(false);
+    plate.interactable(false).show(ui.ctx(), |ui| {
+        ui.set_clip_rect(side);
         let frame = egui::Frame::new().fill(super::theme::BACKGROUND).inner_margin(5.0).corner_radius(4.0);
         frame.show(ui, |ui| {
             let text = egui::RichText::new(text).font(FontId::proportional(13.0)).color(super::theme::STRONG);

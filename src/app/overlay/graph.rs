@@ -9,8 +9,10 @@ use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, RichText, Sense, Shape, St
 const HEIGHT: f32 = 64.0;
 /// Width of a bar in points, its gap included.
 const BAR: f32 = 2.0;
-/// Marks in milliseconds: 60, 30, 20 and so on frames a second. The two highest that fit are drawn.
-const MARKS: [f64; 8] = [1.0, 5.0, 16.7, 33.3, 50.0, 100.0, 500.0, 2000.0];
+/// Marks in milliseconds: 60, 30, 20 and so on frames a second. The highest two that fit are drawn.
+const MARKS: [f64; 10] = [1.0, 5.0, 16.7, 33.3, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0];
+/// Least distance between the words of two marks, and from the lower edge, as a share of the height.
+const APART: f64 = 0.2;
 
 /// Draws the graph.
 pub fn show(ui: &mut Ui, history: &History) {
@@ -30,7 +32,7 @@ pub fn show(ui: &mut Ui, history: &History) {
         mesh.add_colored_rect(bar, theme::ACCENT);
     }
     painter.add(Shape::mesh(mesh));
-    for mark in MARKS.into_iter().filter(|&mark| mark < 0.95 * top).rev().take(2) {
+    for mark in marks(top) {
         let height = y(mark);
         painter.hline(rect.x_range(), height, Stroke::new(1.0, Color32::from_rgba_premultiplied(60, 60, 60, 60)));
         let place = Pos2::new(rect.left() + 4.0, height);
@@ -59,9 +61,32 @@ fn scale(shown: &[f64]) -> f64 {
     (1.15 * highest).max(20.0)
 }
 
+/// The marks that are drawn in a graph up to `top`, from the upper one down.
+fn marks(top: f64) -> impl Iterator<Item = f64> {
+    let mut above = 0.95 * top;
+    let fitting = MARKS.into_iter().rev().filter(move |&mark| {
+        let fits = mark < above && mark > APART * top;
+        if fits {
+            above = mark - APART * top;
+        }
+        fits
+    });
+    fitting.take(2)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::scale;
+    use super::{marks, scale};
+
+    #[test]
+    fn marks_do_not_cover_each_other() {
+        for (top, shown) in
+            [(20.0, &[16.7, 5.0][..]), (57.0, &[50.0, 33.3]), (476.0, &[200.0, 100.0]), (2200.0, &[2000.0, 1000.0])]
+        {
+            assert_eq!(marks(top).collect::<Vec<_>>(), shown, "{top}");
+        }
+        assert!((1..5000).all(|top| marks(f64::from(top).max(20.0)).count() > 0));
+    }
 
     #[test]
     fn the_highest_bar_fits() {

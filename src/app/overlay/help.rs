@@ -14,6 +14,8 @@ const WIDTH: f32 = 560.0;
 const SHARE: f32 = 0.86;
 /// With less room than this, in points, keys stand above what they do and not beside it.
 const TWO_COLUMNS: f32 = 300.0;
+/// Room for the names of keys beside what they do, in points.
+const KEY_COLUMN: f32 = 130.0;
 /// In windows with less room than this, in points, there is nothing to read in.
 const LEAST_ROOM: egui::Vec2 = egui::vec2(200.0, 140.0);
 
@@ -132,10 +134,11 @@ pub fn keys(ui: &mut Ui, labels: &Labels) {
         HELP.iter().for_each(|(keys, what)| entry(ui, &labels.of(keys), what));
         return;
     }
-    egui::Grid::new("keys").num_columns(2).spacing([16.0, 3.0]).show(ui, |ui| {
+    let widest = ui.available_width() - KEY_COLUMN;
+    egui::Grid::new("keys").num_columns(2).spacing([16.0, 3.0]).max_col_width(widest).show(ui, |ui| {
         for (keys, what) in HELP {
             ui.label(RichText::new(labels.of(keys)).color(theme::STRONG));
-            ui.label(RichText::new(*what).color(theme::WEAK));
+            ui.add(egui::Label::new(RichText::new(*what).color(theme::WEAK)).wrap());
             ui.end_row();
         }
     });

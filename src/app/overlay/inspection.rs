@@ -2,6 +2,7 @@
 
 use super::{Change, View, theme};
 use crate::app::inspection::Inspection;
+use crate::scene::Camera;
 use egui::{Align2, Grid, LayerId, Order, Pos2, RichText, Stroke, Ui};
 use glam::DVec2;
 
@@ -14,8 +15,8 @@ const CROSSHAIR: f32 = 6.0;
 /// Radius of the ring around what was pointed at, in points.
 const RING: f32 = 5.0;
 
-/// Draws the crosshair, the outline of the thing, and the box that tells of it.
-pub fn show(ui: &Ui, view: &View<'_>, changes: &mut Vec<Change>) {
+/// Draws the crosshair, the outline of the thing, and the box that tells of it, whose layer it gives.
+pub fn show(ui: &Ui, view: &View<'_>, changes: &mut Vec<Change>) -> Option<LayerId> {
     let available = ui.ctx().content_rect();
     let painter = ui.ctx().layer_painter(LayerId::new(Order::Background, egui::Id::unique("marks")));
     if view.crosshair {
@@ -25,7 +26,7 @@ pub fn show(ui: &Ui, view: &View<'_>, changes: &mut Vec<Change>) {
             painter.line_segment([center - arm, center + arm], Stroke::new(1.0, theme::STRONG));
         }
     }
-    let Some(inspection) = view.inspection else { return };
+    let inspection = view.inspection?;
     if let Some(camera) = &view.stands {
         let place = |at: DVec2| available.min + available.size() * egui::vec2(at.x as f32, at.y as f32);
         for ends in inspection.outline(camera, view.size) {
@@ -38,19 +39,18 @@ pub fn show(ui: &Ui, view: &View<'_>, changes: &mut Vec<Change>) {
             painter.circle_stroke(place(at), RING, Stroke::new(1.0, theme::STRONG));
         }
     }
-    egui::Area::new(egui::Id::unique("inspection")).anchor(Align2::RIGHT_TOP, egui::vec2(-MARGIN, MARGIN)).show(
-        ui.ctx(),
-        |ui| {
-            let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(10.0).corner_radius(6.0);
-            frame.show(ui, |ui| {
-                ui.set_width(WIDTH.min(available.width() - 4.0 * MARGIN).max(1.0));
-                facts(ui, inspection, changes);
-            });
-        },
-    );
+    let area = egui::Area::new(egui::Id::unique("inspection")).anchor(Align2::RIGHT_TOP, egui::vec2(-MARGIN, MARGIN));
+    let shown = area.show(ui.ctx(), |ui| {
+        let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(10.0).corner_radius(6.0);
+        frame.show(ui, |ui| {
+            ui.set_width(WIDTH.min(available.width() - 4.0 * MARGIN).max(1.0));
+            facts(ui, inspection, view.stands.as_ref(), changes);
+        });
+    });
+    Some(shown.response.layer_id)
 }
 
-fn facts(ui: &mut Ui, inspection: &Inspection, changes: &mut Vec<Change>) {
+fn facts(ui: &mut Ui, inspection: &Inspection, stands: Option<&Camera>, changes: &mut Vec<Change>) {
     ui.horizontal(|ui| {
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
             if ui.small_button("Close").clicked() {
@@ -63,7 +63,8 @@ fn facts(ui: &mut Ui, inspection: &Inspection, changes: &mut Vec<Change>) {
         });
     });
     Grid::new("inspection").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
-        for (name, value) in &inspection.facts {
+        let distance = stands.map_or_else(|| "changing".to_owned(), |camera| inspection.distance(camera));
+        for (name, value) in [("distance", distance)].iter().chain(&inspection.facts) {
             ui.label(RichText::new(*name).color(theme::WEAK));
             ui.add(egui::Label::new(RichText::new(value).color(theme::STRONG)).wrap());
             ui.end_row();

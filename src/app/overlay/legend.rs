@@ -3,7 +3,7 @@
 use super::{MARGIN, View, theme};
 use crate::app::maps::{Class, Key, Legend, Scale};
 use crate::measure::colormap::viridis;
-use egui::{Align2, Color32, FontId, Grid, Mesh, Pos2, Rect, RichText, Sense, Shape, Ui, vec2};
+use egui::{Align2, Color32, FontId, Grid, LayerId, Mesh, Pos2, Rect, RichText, Sense, Shape, Ui, vec2};
 
 /// Width and height of a scale's colours in points, and room below for its numbers.
 const BAR: [f32; 2] = [300.0, 14.0];
@@ -13,22 +13,23 @@ const SIDES: f32 = 32.0;
 /// Steps of the colours of a scale.
 const STEPS: usize = 48;
 
-/// Draws the legend of the map on display, if it is one.
-pub fn show(ui: &Ui, view: &View<'_>, available: Rect) {
-    let Some(legend) = &view.methods.legend else { return };
+/// Draws the legend of the map on display, if it is one, and gives its layer.
+pub fn show(ui: &Ui, view: &View<'_>, available: Rect) -> Option<LayerId> {
+    let legend = view.methods.legend.as_ref()?;
     let room = if view.methods.split.is_on { SIDES } else { 0.0 };
     // Each has a size of its own, by which its corner is placed.
-    egui::Area::new(egui::Id::unique(("legend", legend.map.name())))
+    let area = egui::Area::new(egui::Id::unique(("legend", legend.map.name())))
         .pivot(Align2::RIGHT_BOTTOM)
         .fixed_pos(available.max - vec2(MARGIN, MARGIN + room))
-        .interactable(false)
-        .show(ui.ctx(), |ui| {
-            let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(10.0).corner_radius(6.0);
-            frame.show(ui, |ui| {
-                ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-                contents(ui, legend);
-            });
+        .interactable(false);
+    let shown = area.show(ui.ctx(), |ui| {
+        let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(10.0).corner_radius(6.0);
+        frame.show(ui, |ui| {
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+            contents(ui, legend);
         });
+    });
+    Some(shown.response.layer_id)
 }
 
 fn contents(ui: &mut Ui, legend: &Legend) {

@@ -24,7 +24,9 @@ pub fn show(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     if ui.add_enabled(is_turned, egui::Button::new("As in the file")).clicked() {
         changes.push(Change::ResetLights);
     }
-    ScrollArea::vertical().id_salt("lights").max_height(TALLEST).show(ui, |ui| {
+    // Within the panel's own no height counts as free.
+    let list = ScrollArea::vertical().id_salt("lights").max_height(TALLEST).min_scrolled_height(TALLEST);
+    list.show(ui, |ui| {
         for (number, dial) in view.lights.iter().enumerate() {
             let mut turned = dial.clone();
             ui.push_id(number, |ui| one(ui, &mut turned));

@@ -223,17 +223,18 @@ pub enum Change {
 /// Draws the overlay and returns what was asked for, in order.
 pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
     let mut changes = Vec::new();
-    scenes::boxes(ui, view, &mut changes);
+    let mut above = Vec::new();
+    above.extend(scenes::boxes(ui, view, &mut changes));
     // They answer what was just asked for: whoever hides the rest wants to know all the same.
     notice::show(ui, view.notices);
     if !shown.overlay {
         return changes;
     }
-    inspection::show(ui, view, &mut changes);
+    above.extend(inspection::show(ui, view, &mut changes));
     let available = ui.ctx().content_rect();
     if !view.showing.is_exact() {
         divider::show(ui, view, available, &mut changes);
-        legend::show(ui, view, available);
+        above.extend(legend::show(ui, view, available));
     }
     let area = egui::Area::new(egui::Id::unique("overlay"))
         .fixed_pos(available.min + egui::vec2(MARGIN, MARGIN))
@@ -259,8 +260,9 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
         help::show(ui, view.labels, &mut changes);
     }
     if view.methods.split.is_on {
-        // Where they meet, the divider lies under the panel, though it was used last.
-        ui.ctx().move_to_top(area.response.layer_id);
+        // Where they meet, the divider lies under everything else, though it was used last.
+        above.push(area.response.layer_id);
+        above.into_iter().for_each(|layer| ui.ctx().move_to_top(layer));
     }
     changes
 }
@@ -280,7 +282,6 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
         let time = view.history.last().map_or_else(String::new, |ms| format!(" | {ms:.1} ms"));
         let (width, height) = view.size;
         let line = format!("{rate}{time} | {width}x{height}");
-        ui.label(RichText::new(line).size(15.0).strong().color(theme::STRONG));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let name = if shown.panel { "Hide panel" } else { "Show panel" };
             if ui.small_button(name).on_hover_text("Tab; H hides everything").clicked() {
@@ -289,6 +290,10 @@ fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Cha
             if ui.small_button("Help").on_hover_text("F1: keys, settings, how it works").clicked() {
                 changes.push(Change::ToggleHelp);
             }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                let line = RichText::new(line).size(15.0).strong().color(theme::STRONG);
+                ui.add(egui::Label::new(line).truncate());
+            });
         });
     });
     ui.horizontal(|ui| {

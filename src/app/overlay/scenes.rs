@@ -3,7 +3,7 @@
 use super::{Change, View, placing, theme};
 use crate::app::scenes::{Failure, Loading, Report, Wish};
 use crate::scene::Scene;
-use egui::{Align2, Color32, ProgressBar, RichText, ScrollArea, Ui};
+use egui::{Align2, Color32, LayerId, Order, ProgressBar, RichText, ScrollArea, Ui};
 use std::path::Path;
 
 /// Widest that a box of text is, in points.
@@ -16,11 +16,11 @@ const WARNINGS: usize = 5;
 /// Highest that the text of a failure is, in points.
 const TALLEST: f32 = 160.0;
 
-/// The boxes over the picture: they are there even where the overlay is hidden.
-pub fn boxes(ui: &Ui, view: &View<'_>, changes: &mut Vec<Change>) {
+/// The boxes over the picture, whose layer it gives: they are there even where the overlay is hidden.
+pub fn boxes(ui: &Ui, view: &View<'_>, changes: &mut Vec<Change>) -> Option<LayerId> {
     let Report { loading, failure, odd, hint, .. } = &view.scenes;
     if loading.is_none() && failure.is_none() && odd.is_none() && hint.is_none() {
-        return;
+        return None;
     }
     let available = ui.ctx().content_rect();
     let width = WIDTH.min(available.width() - 2.0 * MARGIN).max(1.0);
@@ -43,6 +43,7 @@ pub fn boxes(ui: &Ui, view: &View<'_>, changes: &mut Vec<Change>) {
             });
         }
     });
+    Some(LayerId::new(Order::Middle, id))
 }
 
 fn in_box(ui: &mut Ui, edge: Color32, add_contents: impl FnOnce(&mut Ui)) {

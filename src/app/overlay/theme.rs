@@ -61,10 +61,14 @@ pub fn apply(context: &egui::Context) {
         visuals.widgets.inactive.bg_fill = Color32::from_rgb(44, 50, 62);
         visuals.widgets.inactive.weak_bg_fill = Color32::from_rgb(38, 43, 54);
         visuals.widgets.hovered.weak_bg_fill = Color32::from_rgb(56, 64, 80);
+        // Every blink would be a picture.
+        visuals.text_cursor.blink = false;
         style.spacing.item_spacing = egui::vec2(8.0, 5.0);
         style.spacing.slider_width = 84.0;
         style.spacing.combo_width = 132.0;
         style.spacing.indent = 16.0;
+        // Room for the scroll bar, which else lies on what is scrolled.
+        style.spacing.scroll.floating_allocated_width = 8.0;
         style.interaction.tooltip_delay = 0.3;
     });
 }

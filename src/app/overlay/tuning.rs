@@ -38,24 +38,30 @@ impl Tuning<'_> {
 pub fn show(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     let Tuning { bound, survey, is_elsewhere, .. } = view.tuning;
     bound_row(ui, bound, changes);
-    match survey {
-        Some(survey) if survey.end.is_none() => ui.horizontal(|ui| {
-            if ui.button("Stop").clicked() {
-                changes.push(Change::StopSearch);
+    let running = survey.filter(|survey| survey.end.is_none());
+    // What takes the place of another in a row must not be taken for it.
+    ui.push_id(running.is_some(), |ui| {
+        ui.horizontal(|ui| match running {
+            Some(survey) => {
+                if ui.button("Stop").clicked() {
+                    changes.push(Change::StopSearch);
+                }
+                ui.add(ProgressBar::new(survey.share as f32).show_percentage());
             }
-            ui.add(ProgressBar::new(survey.share as f32).show_percentage());
-        }),
-        _ => ui.horizontal(|ui| {
-            let tune = ui.button("Tune for this view");
-            if tune.on_hover_text("find the cheapest settings within the bound; you can walk on meanwhile").clicked() {
-                changes.push(Change::Search(bound));
+            None => {
+                let tune = ui.button("Tune for this view");
+                let what = "find the cheapest settings within the bound; you can walk on meanwhile";
+                if tune.on_hover_text(what).clicked() {
+                    changes.push(Change::Search(bound));
+                }
+                let front = ui.button("Measure front");
+                let what = "measure time against error on this view, without a bound";
+                if front.on_hover_text(what).clicked() {
+                    changes.push(Change::Search(Bound::none(bound.metric)));
+                }
             }
-            let front = ui.button("Measure front");
-            if front.on_hover_text("measure time against error on this view, without a bound").clicked() {
-                changes.push(Change::Search(Bound::none(bound.metric)));
-            }
-        }),
-    };
+        });
+    });
     let Some(survey) = survey else { return };
     if is_elsewhere {
         ui.label(RichText::new("measured from another place").small().color(theme::WARNING));
@@ -177,7 +183,9 @@ fn plot(ui: &mut Ui, survey: &Survey, drawn: Option<usize>) {
         .label_formatter(told);
     let response = plot.show(ui, |plot| {
         plot.hline(HLine::new("", exact_row).color(theme::LINE).allow_hover(false));
-        plot.line(Line::new("", PlotPoints::from(steps)).color(theme::ACCENT).width(1.5).allow_hover(false));
+        plot.line(
+            Line::new("", PlotPoints::from(steps)).color(theme::ACCENT).width(1.5).allow_band(false).allow_hover(false),
+        );
         for (i, point) in survey.points.iter().enumerate() {
             let is_best = front.contains(&i);
             let color = if is_best { theme::ACCENT } else { theme::WEAK.gamma_multiply(0.6) };

@@ -32,13 +32,13 @@ impl Session {
         // Of two sides only both films together are what is seen.
         self.show_frame();
         let Some((film, (job, samples))) = self.presenter.frame().zip(self.traced.as_ref()) else {
-            self.notices.warn(now, "no picture yet");
+            self.notices.warn(now, "No picture yet");
             return;
         };
         if !Arc::ptr_eq(&job.scene, &self.lit) {
             // What there is to say of the scene and its light is not of this picture.
             self.camerawork.postpone();
-            self.notices.tell(now, "screenshot as soon as the changed scene is shown");
+            self.notices.tell(now, "Screenshot as soon as the changed scene is shown");
             return;
         }
         let place = Place {
@@ -50,7 +50,7 @@ impl Session {
         let is_kept = self.posted.as_ref() == Some(job);
         let shot = Shot::new(film, job, *samples, place);
         match self.camerawork.ask(shot, is_kept) {
-            None => self.notices.tell(now, "screenshot as soon as the picture has all its samples"),
+            None => self.notices.tell(now, "Screenshot as soon as the picture has all its samples"),
             Some(shot) => self.write(shot),
         }
     }

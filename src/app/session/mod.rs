@@ -222,7 +222,7 @@ impl Session {
             }
         }
         if self.camerawork.is_due() {
-            warnings.push("no screenshot: the changed scene was not shown any more".to_owned());
+            warnings.push("No screenshot: the changed scene was not shown any more".to_owned());
         }
         let record = self.tally.and_then(|tally| tally.record(self.scenes.load_ms()));
         AppExit { camera, settings, notes, warnings, record }
