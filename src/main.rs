@@ -11,7 +11,6 @@
 mod cli;
 
 use raywalk::scene::guard;
-use std::io::Write;
 use std::panic;
 use std::process::ExitCode;
 
@@ -30,8 +29,7 @@ fn main() -> ExitCode {
     match cli::run(&asked) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            // Whoever closed stderr does not want to know.
-            let _ = writeln!(std::io::stderr(), "error: {failure}");
+            cli::note(&format!("error: {failure}"));
             ExitCode::from(failure.exit_code())
         }
     }

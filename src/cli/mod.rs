@@ -21,6 +21,7 @@ mod view;
 
 pub use arguments::command;
 pub use failure::Failure;
+pub use stdout::note;
 
 use clap::ArgMatches;
 

@@ -16,7 +16,7 @@ use raywalk::measure::{MotionMeter, Record, Run};
 use raywalk::picture::WriteOptions;
 use raywalk::render::{Film, Planes, Scratch, render_frame};
 use raywalk::settings::{Settings, Visibility};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Renders what `asked` says.
 pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
@@ -25,6 +25,9 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     let output = asked.get_one::<PathBuf>("output").map(PathBuf::as_path);
     output::check_planes(output, options.planes)?;
     output::check_map(output, options.map)?;
+    if output.is_some_and(|path| options.stats.as_deref().is_some_and(|stats| Path::new(stats) == path)) {
+        return Err(Failure::Usage("--stats and -o name the same file".to_owned()));
+    }
     let frames = Frames::of(&options)?;
     let output = output.map(|path| Output::new(path, write, &frames)).transpose()?;
     let interrupt = Interrupt::listen()?;
@@ -45,6 +48,7 @@ pub fn render(
     if let (Some(warning), false) = (&frames.warning, options.reading.quiet) {
         stdout::note(&format!("warning: {warning}"));
     }
+    check_memory(width, height, options)?;
     if let Some(output) = &mut output {
         output.prepare(width, height, frames)?;
     }
@@ -81,6 +85,19 @@ pub fn render(
         Some(target) => target.write(&record_of(stage, &run, reference.as_ref())),
         None => Ok(()),
     }
+}
+
+/// Measured: bytes a pixel of a picture while it is traced and written, without and with other planes.
+const PLAIN_PIXEL: usize = 24;
+const PIXEL_WITH_PLANES: usize = 80;
+
+/// Looks whether there is memory for the picture: short of it later, the program would end without a word.
+fn check_memory(width: u32, height: u32, options: &Options) -> Result<(), Failure> {
+    let pixel = if options.planes == Planes::default() { PLAIN_PIXEL } else { PIXEL_WITH_PLANES };
+    let bytes = (width as usize).saturating_mul(height as usize).saturating_mul(pixel);
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| {
+        Failure::Run(format!("there is no memory for a picture of {width}x{height} pixels; choose a smaller --size"))
+    })
 }
 
 /// What all frames of a run share.

@@ -13,10 +13,16 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints a note for people on stderr.
+/// Prints a note for people on stderr, as one line: names of files may hold anything.
 pub fn note(text: &str) {
     // Whoever closed stderr does not want to know.
-    let _ = writeln!(io::stderr(), "{text}");
+    let _ = writeln!(io::stderr(), "{}", one_line(text));
+}
+
+/// A text without line ends and other characters that a terminal obeys.
+fn one_line(text: &str) -> String {
+    let shown = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+    text.trim_end().chars().map(shown).collect()
 }
 
 /// `value` as one line of JSON, its fields in their own order.
