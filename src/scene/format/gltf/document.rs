@@ -153,6 +153,7 @@ fn load<'a>(
         Cow::Borrowed(bytes) => Cow::Borrowed(&bytes[..to_usize(wanted)]),
         Cow::Owned(mut bytes) => {
             bytes.truncate(to_usize(wanted));
+            bytes.shrink_to_fit();
             Cow::Owned(bytes)
         }
     })

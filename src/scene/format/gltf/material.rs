@@ -56,9 +56,9 @@ fn unique(name: Option<&str>, i: usize, names: &mut HashSet<String>) -> String {
     own
 }
 
-/// Which texture coordinates meshes of a material need: whether the second, and those that its normal map follows.
-pub fn coordinates(material: &MaterialDesc) -> (bool, Option<u8>) {
-    let normal = material.relief.normal.as_ref().map(|map| map.lookup.set);
+/// What meshes of a material need: whether the second texture coordinates, and how its normal map is looked up.
+pub fn coordinates(material: &MaterialDesc) -> (bool, Option<&Lookup<NameRef>>) {
+    let normal = material.relief.normal.as_ref().map(|map| &map.lookup);
     let lookups = [
         material.color.texture.as_ref(),
         material.emission.texture.as_ref(),
@@ -66,7 +66,7 @@ pub fn coordinates(material: &MaterialDesc) -> (bool, Option<u8>) {
         material.transmission.as_ref(),
         material.occlusion.as_ref().map(|map| &map.lookup),
     ];
-    (normal == Some(1) || lookups.into_iter().flatten().any(|lookup| lookup.set == 1), normal)
+    (lookups.into_iter().flatten().chain(normal).any(|lookup| lookup.set == 1), normal)
 }
 
 /// Reads one material.

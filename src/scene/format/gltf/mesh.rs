@@ -6,7 +6,8 @@ use super::fault::{Fault, Read};
 use super::nodes::Nodes;
 use super::skin::{self, Holder};
 use super::{tangents, topology};
-use crate::scene::desc::MeshDesc;
+use crate::scene::desc::{MeshDesc, NameRef};
+use crate::scene::material::Lookup;
 use glam::{DVec2, DVec3, Vec2, Vec4};
 use gltf::json::mesh::{MorphTarget, Primitive, Semantic};
 use gltf::json::validation::Checked;
@@ -27,8 +28,8 @@ pub struct Job<'a> {
     pub held_by: Option<Holder>,
     /// Whether its material looks up second texture coordinates.
     pub second_coordinates: bool,
-    /// Which coordinates its material looks up a normal map by, if it has one.
-    pub normal_map: Option<u8>,
+    /// How its material looks up a normal map, if it has one.
+    pub normal_map: Option<&'a Lookup<NameRef>>,
 }
 
 /// What was read.
@@ -88,10 +89,10 @@ impl Job<'_> {
         if let Some(colors) = self.vertex_attribute(document, Semantic::Colors(0), count)? {
             mesh.colors = colors.colors(which)?.into_iter().map(Vec4::from_array).collect();
         }
-        if let Some(set) = self.normal_map {
+        if let Some(map) = self.normal_map {
             match self.vertex_attribute(document, Semantic::Tangents, count)?.filter(|_| !mesh.normals.is_empty()) {
                 Some(tangents) => mesh.tangents = tangents.vectors(which)?.into_iter().map(Vec4::from_array).collect(),
-                None if !tangents::generate(&mut mesh, set) => {
+                None if !tangents::generate(&mut mesh, map.set, map.transform) => {
                     notes.push("the normal map has no texture coordinates to follow; it is not shown".to_owned());
                 }
                 None => {}

@@ -4,18 +4,18 @@
 use crate::scene::desc::MeshDesc;
 use crate::scene::guard::guarded;
 use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
-use glam::{DVec3, Vec4};
+use glam::{Affine2, DVec3, Vec4};
 use std::collections::HashMap;
 
-/// Gives a mesh tangents along the texture coordinates of set `set`. Vertices at which they break are doubled, so that
+/// Gives a mesh tangents along the texture coordinates of set `set`, seen through `transform` like the map. Vertices at which they break are doubled, so that
 /// one vertex has one tangent. `false` where the mesh has no such coordinates, or no tangents can be made.
-pub fn generate(mesh: &mut MeshDesc, set: u8) -> bool {
+pub fn generate(mesh: &mut MeshDesc, set: u8, transform: Affine2) -> bool {
     let has_coordinates = if set == 0 { !mesh.uvs.is_empty() } else { !mesh.uvs1.is_empty() };
     if !has_coordinates || mesh.triangles.is_empty() {
         return false;
     }
     let none = Vec4::new(1.0, 0.0, 0.0, 1.0);
-    let mut corners = Corners { mesh, set, tangents: vec![[none; 3]; mesh.triangles.len()] };
+    let mut corners = Corners { mesh, set, transform, tangents: vec![[none; 3]; mesh.triangles.len()] };
     // It is not meant to panic on any mesh; should it do so, only the normal map is lost.
     let made = guarded(|| generate_tangents(&mut corners).is_ok()).unwrap_or(false);
     let tangents = corners.tangents;
@@ -29,6 +29,7 @@ pub fn generate(mesh: &mut MeshDesc, set: u8) -> bool {
 struct Corners<'a> {
     mesh: &'a MeshDesc,
     set: u8,
+    transform: Affine2,
     tangents: Vec<[Vec4; 3]>,
 }
 
@@ -77,7 +78,8 @@ impl Geometry<Exact> for Corners<'_> {
 
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
         let vertex = self.vertex(face, corner);
-        if self.set == 0 { self.mesh.uvs[vertex].as_vec2().to_array() } else { self.mesh.uvs1[vertex].to_array() }
+        let uv = if self.set == 0 { self.mesh.uvs[vertex].as_vec2() } else { self.mesh.uvs1[vertex] };
+        self.transform.transform_point2(uv).to_array()
     }
 
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, corner: usize) {
@@ -124,7 +126,7 @@ fn double<T: Copy>(values: &mut Vec<T>, place: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec2;
+    use glam::{DVec2, Vec2};
 
     /// Two triangles in the x-y plane that share an edge.
     fn square(uvs: [[f64; 2]; 4]) -> MeshDesc {
@@ -140,21 +142,25 @@ mod tests {
     #[test]
     fn tangents_follow_u_and_the_sign_follows_v() {
         let mut plain = square([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
-        assert!(generate(&mut plain, 0));
+        assert!(generate(&mut plain, 0, Affine2::IDENTITY));
         assert_eq!(plain.tangents, [Vec4::new(1.0, 0.0, 0.0, 1.0); 4]);
         let mut mirrored = square([[1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [1.0, 1.0]]);
-        assert!(generate(&mut mirrored, 0));
+        assert!(generate(&mut mirrored, 0, Affine2::IDENTITY));
         assert_eq!(mirrored.tangents, [Vec4::new(-1.0, 0.0, 0.0, -1.0); 4]);
+        // So it is for coordinates that are mirrored on their way to the map.
+        let mut seen_mirrored = square([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+        assert!(generate(&mut seen_mirrored, 0, Affine2::from_scale(Vec2::new(-1.0, 1.0))));
+        assert_eq!(seen_mirrored.tangents, mirrored.tangents);
     }
 
     #[test]
     fn a_seam_doubles_its_vertices() {
         // The second triangle's texture is mirrored at the diagonal.
         let mut mesh = square([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [1.0, 0.0]]);
-        assert!(generate(&mut mesh, 0));
+        assert!(generate(&mut mesh, 0, Affine2::IDENTITY));
         assert_eq!(mesh.vertices.len(), 6);
         assert_eq!([mesh.normals.len(), mesh.uvs.len(), mesh.tangents.len()], [6; 3]);
         assert!(mesh.triangles[0].iter().all(|i| !mesh.triangles[1].contains(i)));
-        assert!(!generate(&mut mesh, 1), "there are no second coordinates");
+        assert!(!generate(&mut mesh, 1, Affine2::IDENTITY), "there are no second coordinates");
     }
 }
