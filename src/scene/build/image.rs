@@ -69,6 +69,8 @@ struct Waiting {
     bytes: Encoded,
     /// The image that holds its opacity.
     opacity: Option<Cow<'static, [u8]>>,
+    /// It is nothing but opacity, of white.
+    is_bare: bool,
     encoding: Encoding,
 }
 
@@ -117,6 +119,7 @@ impl ImageStore {
 
     /// Reads an image that is not known yet, for it to be decoded.
     fn read(&mut self, image: &ImageDesc, encoding: Encoding, waiting: &mut Queue) -> Result<Key, FileError> {
+        let mut is_bare = false;
         let (key, bytes, opacity) = match &image.source {
             ImageSource::File(name) => {
                 let path = self.files.locate(&name.name)?;
@@ -128,6 +131,7 @@ impl ImageStore {
             }
             ImageSource::Masked { name, opacity } => {
                 let (path, mask) = (self.files.locate(&name.name)?, self.files.locate(&opacity.name)?);
+                is_bare = path == mask;
                 let key = Key::Masked(path.clone(), mask.clone(), encoding);
                 if self.is_known(&key, waiting) {
                     return Ok(key);
@@ -144,7 +148,7 @@ impl ImageStore {
             }
         };
         waiting.keys.insert(key.clone());
-        waiting.images.push(Waiting { key: key.clone(), bytes, opacity, encoding });
+        waiting.images.push(Waiting { key: key.clone(), bytes, opacity, is_bare, encoding });
         Ok(key)
     }
 
@@ -152,29 +156,34 @@ impl ImageStore {
         self.decoded.contains_key(key) || waiting.keys.contains(key)
     }
 
-    /// Decodes images side by side. What they may take is shared out beforehand, by what their headers say.
+    /// Decodes images side by side, large ones one after the other. What they may take is shared out beforehand, by what their
+    /// headers say.
     fn decode(&mut self, waiting: Vec<Waiting>) {
         let progress = self.files.progress();
         progress.begin("decoding textures", waiting.len());
-        let budgets: Vec<Result<u64, DecodeError>> = waiting
+        let budgets: Vec<Result<Needs, DecodeError>> = waiting
             .iter()
             .map(|image| {
-                let needed = |bytes: &[u8]| guarded(|| needed_bytes(bytes, &self.limits));
-                let opacity = image.opacity.as_deref().map_or(Ok(0), needed)?;
-                let needed = needed(&image.bytes)?.saturating_add(opacity);
-                let left = self.bytes_left.checked_sub(needed);
-                self.bytes_left = left.ok_or(DecodeError::Budget(self.limits.texture_bytes))?;
-                Ok(needed)
+                let needed = |bytes: &[u8]| guarded(|| Needs::of(bytes, &self.limits));
+                let opacity = image.opacity.as_deref().map_or(Ok(Needs::default()), needed)?;
+                let needs = needed(&image.bytes)?.and(opacity);
+                let beyond = || DecodeError::Budget(self.limits.texture_bytes);
+                self.bytes_left.checked_sub(needs.meanwhile).ok_or_else(beyond)?;
+                self.bytes_left = self.bytes_left.checked_sub(needs.kept).ok_or_else(beyond)?;
+                Ok(needs)
             })
             .collect();
-        let decode = |(image, budget): (Waiting, Result<u64, DecodeError>)| {
+        let decode = |(image, budget): (Waiting, Result<Needs, DecodeError>)| {
             let allowed = if progress.is_cancelled() { Err(DecodeError::Cancelled) } else { budget };
-            let texels = allowed.and_then(|budget| guarded(|| decode(&image, budget)));
+            let texels = allowed.and_then(|needs| guarded(|| decode(&image, needs.meanwhile)));
             progress.advance();
-            (image.key, texels.map(Arc::new).map_err(|error| error.to_string()))
+            (image.key, texels.map(Arc::new).map_err(|error| one_line(&error.to_string())))
         };
-        let decoded: Vec<_> = waiting.into_par_iter().zip(budgets).map(decode).collect();
+        let is_large = |needs: &Result<Needs, DecodeError>| needs.as_ref().is_ok_and(|needs| needs.meanwhile > LARGE);
+        let (large, small): (Vec<_>, Vec<_>) = waiting.into_iter().zip(budgets).partition(|(_, needs)| is_large(needs));
+        let decoded: Vec<_> = small.into_par_iter().map(decode).collect();
         self.decoded.extend(decoded);
+        self.decoded.extend(large.into_iter().map(decode));
     }
 
     /// The texels of an image that was decoded.
@@ -213,19 +222,48 @@ fn open(bytes: &[u8]) -> Result<impl ImageDecoder, DecodeError> {
     Ok(reader.into_decoder()?)
 }
 
-/// The most memory that decoding an image takes, by its header.
-fn needed_bytes(bytes: &[u8], limits: &Limits) -> Result<u64, DecodeError> {
-    let decoder = open(bytes)?;
-    let (width, height) = decoder.dimensions();
-    if u64::from(width.max(height)) > limits.texture_edge {
-        return Err(DecodeError::Edge(limits.texture_edge));
+/// Images that take more bytes than this while they are decoded are decoded alone.
+const LARGE: u64 = 128 << 20;
+
+/// How many bytes an image takes, by its header.
+#[derive(Clone, Copy, Debug, Default)]
+struct Needs {
+    /// As long as the scene is there.
+    kept: u64,
+    /// At most, while it is decoded.
+    meanwhile: u64,
+}
+
+impl Needs {
+    fn of(bytes: &[u8], limits: &Limits) -> Result<Self, DecodeError> {
+        let decoder = open(bytes)?;
+        let (width, height) = decoder.dimensions();
+        if u64::from(width.max(height)) > limits.texture_edge {
+            return Err(DecodeError::Edge(limits.texture_edge));
+        }
+        if width == 0 || height == 0 {
+            return Err(DecodeError::Empty);
+        }
+        let pixels = u64::from(width) * u64::from(height);
+        // Four bytes a texel, and a third more for the smaller sizes.
+        let kept = pixels.saturating_mul(16) / 3;
+        let as_bytes = pixels.saturating_mul(4);
+        // The coefficients of a progressive JPEG: two bytes for each channel.
+        let coefficients = if bytes.starts_with(&[0xFF, 0xD8]) { pixels.saturating_mul(6) } else { 0 };
+        let stages = [coefficients, as_bytes].map(|beside| decoder.total_bytes().saturating_add(beside));
+        let meanwhile = stages.into_iter().fold(as_bytes.saturating_add(kept), u64::max);
+        Ok(Self { kept, meanwhile })
     }
-    if width == 0 || height == 0 {
-        return Err(DecodeError::Empty);
+
+    /// With another image that is decoded for this one, and not kept.
+    fn and(self, other: Self) -> Self {
+        Self { kept: self.kept, meanwhile: self.meanwhile.saturating_add(other.meanwhile) }
     }
-    // Four bytes a texel, and a third more for the smaller sizes.
-    let texels = (u64::from(width) * u64::from(height)).saturating_mul(16) / 3;
-    Ok(decoder.total_bytes().max(texels))
+}
+
+/// What a decoder says may be of several lines.
+fn one_line(message: &str) -> String {
+    message.split_ascii_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 fn decode(image: &Waiting, budget: u64) -> Result<Texels, DecodeError> {
@@ -237,6 +275,9 @@ fn decode(image: &Waiting, budget: u64) -> Result<Texels, DecodeError> {
         let [across, up] = [(opacity.width(), pixels.width()), (opacity.height(), pixels.height())]
             .map(|(from, to)| move |i: u32| (u64::from(i) * u64::from(from) / u64::from(to)) as u32);
         for (x, y, pixel) in pixels.enumerate_pixels_mut() {
+            if image.is_bare {
+                pixel.0 = [u8::MAX; 4];
+            }
             pixel.0[3] = opacity.get_pixel(across(x), up(y)).0[channel];
         }
     }
