@@ -4,6 +4,7 @@ use super::Limits;
 use super::limits::exceeded;
 use super::progress::{Progress, Stamp};
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::fs::File;
 use std::io::{self, Read};
 use std::mem;
@@ -51,7 +52,12 @@ pub struct Files {
     bytes_left: u64,
     limit: u64,
     progress: Progress,
+    /// How many files were looked for in vain.
+    missed: Cell<u32>,
 }
+
+/// Most files looked for in vain that are noted: each takes several questions to the disk.
+const MOST_MISSED: u32 = 4096;
 
 impl Files {
     /// The files in the folder of `scene` and in the folders within.
@@ -71,7 +77,7 @@ impl Files {
 
     fn new(source: Source, folder: PathBuf, limits: &Limits) -> Self {
         let progress = Progress::default();
-        Self { source, folder, bytes_left: limits.file_bytes, limit: limits.file_bytes, progress }
+        Self { source, folder, bytes_left: limits.file_bytes, limit: limits.file_bytes, progress, missed: Cell::new(0) }
     }
 
     /// The same, with `progress` told what is looked at.
@@ -114,6 +120,9 @@ impl Files {
 
     /// Notes what was looked for in vain, if it may yet come to be there; so may the folder that it would be in.
     fn missed(&self, scene: &Path, relative: &Path) {
+        if self.missed.replace(self.missed.get().saturating_add(1)) >= MOST_MISSED {
+            return;
+        }
         let path = self.folder.join(relative);
         let there = path.ancestors().skip(1).find_map(|folder| Some((folder, folder.canonicalize().ok()?)));
         let Some((folder, place)) = there.filter(|(_, place)| place.starts_with(scene)) else { return };

@@ -5,6 +5,8 @@
 pub struct Limits {
     /// Bytes read from all files of a scene together.
     pub file_bytes: u64,
+    /// How many bytes a compressed file may have for each of its own, beyond what is always allowed.
+    pub expansion: u64,
     /// Bytes of all decoded textures together.
     pub texture_bytes: u64,
     /// Width and height of a texture in texels.
@@ -15,7 +17,9 @@ pub struct Limits {
     pub primitives: u64,
     /// Nodes of a model's tree, and groups, models and their lights, each as often as it is placed.
     pub nodes: u64,
-    /// Vertices and indices read from all meshes together.
+    /// Lights of the scene and its models, each as often as it is placed.
+    pub lights: u64,
+    /// Vertices and indices read from a file's meshes together.
     pub vertices: u64,
     /// Levels of objects and lists within each other in a scene file, and of groups and models in the scene.
     pub nesting: u64,
@@ -41,6 +45,13 @@ const ROWS: &[Row] = &[
         default: 2 << 30,
         ceiling: u64::MAX,
         field: |l| &mut l.file_bytes,
+    },
+    Row {
+        name: "expansion",
+        help: "times that a compressed file of more than 16 MiB, expanded, is as large",
+        default: 100,
+        ceiling: u64::MAX,
+        field: |l| &mut l.expansion,
     },
     Row {
         name: "texture-bytes",
@@ -78,8 +89,15 @@ const ROWS: &[Row] = &[
         field: |l| &mut l.nodes,
     },
     Row {
+        name: "lights",
+        help: "lights, as often as placed",
+        default: 10_000,
+        ceiling: u32::MAX as u64 - 1,
+        field: |l| &mut l.lights,
+    },
+    Row {
         name: "vertices",
-        help: "vertices and indices read from meshes",
+        help: "vertices and indices read from a glTF or OBJ file",
         default: 1 << 26,
         ceiling: u32::MAX as u64 - 1,
         field: |l| &mut l.vertices,
@@ -98,11 +116,13 @@ impl Default for Limits {
     fn default() -> Self {
         let mut limits = Self {
             file_bytes: 0,
+            expansion: 0,
             texture_bytes: 0,
             texture_edge: 0,
             objects: 0,
             primitives: 0,
             nodes: 0,
+            lights: 0,
             vertices: 0,
             nesting: 0,
             picture_edge: 0,

@@ -320,6 +320,15 @@ fn an_exceeded_limit_is_named_and_can_be_raised() {
         assert!(error.contains("(/objects/3)") && error.contains(&format!("--limit {name}=N")), "{error}");
     }
     let mut lowered = LoadOptions::default();
+    lowered.limits.set("lights", "3").unwrap();
+    let lights = |n: usize| {
+        let light = r#"{ "type": "point", "position": [0, 0, 0] }"#;
+        format!(r#"{{ "version": 1, "lights": [{}] }}"#, vec![light; n].join(","))
+    };
+    Folder::new().load(lights(3), &lowered).unwrap();
+    let error = Folder::new().load(lights(4), &lowered).unwrap_err().to_string();
+    assert!(error.contains("--limit lights=N"), "{error}");
+    let mut lowered = LoadOptions::default();
     lowered.limits.set("file-bytes", "10").unwrap();
     let error = Folder::new().load(spheres(1), &lowered).unwrap_err().to_string();
     assert!(error.contains("file-bytes"), "{error}");

@@ -160,8 +160,17 @@ impl SceneBuilder {
         self.progress.begin("placing objects", 0);
         self.cameras.extend(cameras);
         self.survey(&contents)?;
+        self.take_lights(contents.lights.len(), At(0))?;
         self.lights.extend(contents.lights);
         self.add_objects(&contents.objects, &Placement::WORLD, &contents.materials, warnings)
+    }
+
+    /// Whether there may be `count` lights more.
+    fn take_lights(&self, count: usize, at: At) -> Outcome<()> {
+        if (self.lights.len() + count) as u64 <= self.limits.lights {
+            return Ok(());
+        }
+        Err(Problem::new(at, format!("lights: {}", exceeded("lights", self.limits.lights))))
     }
 
     /// Looks how often the file that is open places what, and decides which meshes are stored once.

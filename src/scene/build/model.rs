@@ -228,6 +228,7 @@ impl SceneBuilder {
 
     fn add_lights(&mut self, lights: &[Light], placement: &Placement, at: At) -> Outcome<()> {
         self.count_nodes(lights.len(), at)?;
+        self.take_lights(lights.len(), at)?;
         for light in lights {
             let too_far = || Problem::new(at, "in the world, a light of the model lies beyond 3.4e38; move it nearer");
             self.lights.push(placed(light, placement).ok_or_else(too_far)?);

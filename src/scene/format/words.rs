@@ -53,7 +53,7 @@ pub struct Words<'t> {
 impl<'t> Words<'t> {
     /// The words of a text.
     pub fn of(text: &'t [u8]) -> Self {
-        Self::line(text, 0..text.len())
+        Self::line(text, after_mark(text)..text.len())
     }
 
     /// The words of a part of a text, which keep their places in the whole.
@@ -115,6 +115,12 @@ impl<'t> Iterator for Words<'t> {
 /// Whether a text starts with a blank.
 fn is_blank(text: &[u8]) -> bool {
     text[0].is_ascii_whitespace() || text.starts_with(b"\\\n") || text.starts_with(b"\\\r\n")
+}
+
+/// Where a text starts: some programs begin it with a mark of its byte order.
+pub fn after_mark(text: &[u8]) -> usize {
+    const MARK: &[u8] = b"\xEF\xBB\xBF";
+    if text.starts_with(MARK) { MARK.len() } else { 0 }
 }
 
 #[cfg(test)]

@@ -43,6 +43,7 @@ fn every_entity_becomes_what_it_says() {
 fn lights_without_a_colour_share_the_brightness() {
     let light = |text: &str| -> Vec<Vec3> { load_nff(text).unwrap().lights.iter().map(|l| l.color).collect() };
     assert_eq!(light("l 0 0 1"), [Vec3::ONE]);
+    assert_eq!(light("\u{feff}l 0 0 1"), [Vec3::ONE], "after the mark of the byte order");
     let four = light("l 0 0 1\nl 0 0 2 0.5 1 0\nl 0 0 3 # 1 1 1\nl 0 0 4");
     assert_eq!(four, [Vec3::splat(0.5), Vec3::new(0.5, 1.0, 0.0), Vec3::splat(0.5), Vec3::splat(0.5)]);
     let scene = load_nff("l 1 2 3").unwrap();

@@ -223,6 +223,37 @@ fn images_are_found_by_paths_of_other_machines() {
     assert!(picture(&scene, 16, 9).iter().any(|[red, green, blue]| *red > 100 && *green < 20 && *blue < 20));
 }
 
+/// Some programs begin a file with the mark of its byte order, write paths as Windows does, or continue lines.
+#[test]
+fn files_and_libraries_of_other_programs_are_read() {
+    let folder = Folder::new();
+    let mark = "\u{feff}";
+    let image = image::RgbImage::from_pixel(2, 2, image::Rgb([255, 0, 0]));
+    image.save(folder.write("sub/red.png", "")).unwrap();
+    folder.write("sub/s.mtl", format!("{mark}newmtl a\nmap_Kd red.png"));
+    folder.write("s.mtl", "newmtl a\nKd 1 0 0");
+    for library in [r".\s.mtl", r"sub\s.mtl", r"C:\work\s.mtl", "\\\n s.mtl"] {
+        let text = format!("{mark}mtllib {library}\n{TRIANGLE}usemtl \\\r\n a\nf 1 2 3");
+        let scene = load(&folder.write("s.obj", text), &LoadOptions::default()).unwrap();
+        assert!(scene.warnings.is_empty(), "{library}: {:?}", scene.warnings);
+        assert_eq!(scene.materials[scene.objects[0].material as usize].name, "a", "{library}");
+    }
+}
+
+#[test]
+fn a_flood_of_libraries_is_cut_off() {
+    let names: String = (0..1500).map(|i| format!("mtllib {i}.mtl\n")).collect();
+    let scene = load_obj(format!("{names}{TRIANGLE}f 1 2 3")).unwrap();
+    let told = warnings(&scene);
+    assert!(
+        told[100].contains("901 more warnings"),
+        "a thousand that are missing, and one about the rest: {}",
+        told[100]
+    );
+    let again = "mtllib s.mtl\n".repeat(1_000_000);
+    assert_eq!(load_obj(format!("{again}{TRIANGLE}f 1 2 3")).unwrap().warnings.len(), 1);
+}
+
 #[test]
 fn what_an_opacity_map_leaves_out_is_not_there() {
     let folder = Folder::new();
@@ -248,6 +279,13 @@ fn what_an_opacity_map_leaves_out_is_not_there() {
         assert!((whole * 4 / 10..whole * 6 / 10).contains(&rest), "{library}: {rest} of {whole}");
     }
     assert_eq!(seen("map_Kd green.png\nmap_d none.png").0, Alpha::Opaque);
+    // Opacity alone darkens nothing.
+    let grey = image::GrayImage::from_pixel(2, 2, image::Luma([160]));
+    grey.save(folder.write("grey.png", "")).unwrap();
+    folder.write("s.mtl", "newmtl a\nKd 0 1 0\nmap_d grey.png");
+    let masked = picture(&load(&obj, &LoadOptions::default()).unwrap(), 16, 16);
+    folder.write("s.mtl", "newmtl a\nKd 0 1 0\n");
+    assert_eq!(masked, picture(&load(&obj, &LoadOptions::default()).unwrap(), 16, 16));
 }
 
 #[test]
@@ -290,7 +328,9 @@ fn compressed_files_are_read_within_the_limit() {
 fn limits_hold_before_memory_is_taken() {
     let groups = format!("{TRIANGLE}{}", "g\nf 1 2 3\n".repeat(20));
     let fan = format!("{TRIANGLE}f {}", "1 2 3 ".repeat(10));
-    for (limit, text) in [("objects", groups), ("primitives", fan)] {
+    let (positions, corners) =
+        (format!("{TRIANGLE}{TRIANGLE}").repeat(2), format!("{TRIANGLE}f {}", "1 2 3 ".repeat(3)));
+    for (limit, text) in [("objects", groups), ("primitives", fan), ("vertices", positions), ("vertices", corners)] {
         let mut options = LoadOptions::default();
         options.limits.set(limit, "10").unwrap();
         let error = load(&Folder::new().write("s.obj", text), &options).unwrap_err().to_string();

@@ -23,9 +23,10 @@ const FIRST_MIRROR: f64 = 3.0;
 const WITHOUT_EFFECT: [&str; 5] = ["Ka", "map_Ka", "sharpness", "map_aat", "Km"];
 
 /// Reads the materials of a library, and what is odd about its text. Images that its maps name are sought with
-/// `has_file` and become `textures`.
+/// `has_file` and become `textures`; `folder` is the library's.
 pub fn read(
     text: &[u8],
+    folder: &str,
     textures: &mut Textures,
     mut has_file: impl FnMut(&str) -> bool,
 ) -> (Vec<MaterialDesc>, Warnings) {
@@ -42,7 +43,7 @@ pub fn read(
             warnings.push(statement.at, format!("{} stands before the first newmtl", statement.shown()));
             continue;
         };
-        match draft.statement(&statement, &mut has_file) {
+        match draft.statement(&statement, folder, &mut has_file) {
             Ok(true) => {}
             Ok(false) => {
                 if unknown.len() < Warnings::KEPT && unknown.insert(statement.keyword.to_vec()) {
@@ -83,8 +84,13 @@ impl Draft {
     }
 
     /// Takes a statement in; false if it is unknown.
-    fn statement(&mut self, statement: &Statement, has_file: &mut impl FnMut(&str) -> bool) -> Outcome<bool> {
-        let mut map = || map::read(statement).map(|map| found(map, &mut *has_file));
+    fn statement(
+        &mut self,
+        statement: &Statement,
+        folder: &str,
+        has_file: &mut impl FnMut(&str) -> bool,
+    ) -> Outcome<bool> {
+        let mut map = || map::read(statement).map(|map| found(map, folder, &mut *has_file));
         // Programs do not agree on capitals.
         match &*statement.keyword.to_ascii_lowercase() {
             b"kd" => self.diffuse = Some(color(statement)?),
@@ -126,9 +132,11 @@ impl Draft {
             (map, None) => (Alpha::Opaque, map.map(|map| textures.lookup(map))),
             // One image for both has an opacity of its own.
             (Some(map), Some(holes)) if map.file == holes.file => (Alpha::Mask(HOLE), Some(textures.lookup(map))),
-            (map, Some(holes)) => {
+            (Some(map), Some(holes)) => (Alpha::Mask(HOLE), Some(textures.masked(map, Some(holes.file)))),
+            // Opacity alone: the colour is white.
+            (None, Some(holes)) => {
                 let file = holes.file.clone();
-                (Alpha::Mask(HOLE), Some(textures.masked(map.unwrap_or(holes), Some(file))))
+                (Alpha::Mask(HOLE), Some(textures.masked(holes, Some(file))))
             }
         };
         let mut scaled = |map: Map, scale: f32| Scaled { scale: map.bump * scale, lookup: textures.lookup(map) };
@@ -199,13 +207,14 @@ fn is_normal_map(file: &str) -> bool {
     ["norm", "nrm", "ddn"].iter().any(|part| stem.contains(part)) || stem.ends_with("_n")
 }
 
-/// Programs write paths of the machine they ran on; an image of that name beside the library will do.
-fn found(mut map: Map, mut has_file: impl FnMut(&str) -> bool) -> Map {
-    if !has_file(&map.file) {
-        let name = map.file.rsplit('/').next().unwrap_or_default();
-        if has_file(name) {
-            map.file = name.to_owned();
-        }
+/// Programs write paths of the machine they ran on, or from the library's folder; an image of that name there or beside
+/// the scene will do.
+fn found(mut map: Map, folder: &str, mut has_file: impl FnMut(&str) -> bool) -> Map {
+    let alone = map.file.rsplit('/').next().unwrap_or_default();
+    let within = |name: &str| if folder.is_empty() { name.to_owned() } else { format!("{folder}/{name}") };
+    let mut places = [map.file.clone(), within(&map.file), alone.to_owned(), within(alone)];
+    if let Some(place) = places.iter_mut().find(|place| has_file(place)) {
+        map.file = std::mem::take(place);
     }
     map
 }

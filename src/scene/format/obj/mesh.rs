@@ -105,6 +105,10 @@ struct Reader<'a> {
     left_out: u64,
     first_left_out: At,
     unknown: HashSet<Vec<u8>>,
+    /// What statements have named as material libraries.
+    libraries: HashSet<String>,
+    /// Vertices, corners of faces, and what they carry, that may still be read.
+    elements_left: u64,
 }
 
 impl<'a> Reader<'a> {
@@ -131,15 +135,26 @@ impl<'a> Reader<'a> {
             left_out: 0,
             first_left_out: At(0),
             unknown: HashSet::new(),
+            libraries: HashSet::new(),
+            elements_left: limits.vertices,
         }
     }
 
     fn statement(&mut self, statement: &Statement) -> Outcome<()> {
         let Statement { at, keyword, mut words, .. } = statement.clone();
         match keyword {
-            b"v" => self.position(&mut words)?,
-            b"vt" => self.uv(&mut words)?,
-            b"vn" => self.normals.push(DVec3::from_array(words.numbers("normal")?)),
+            b"v" => {
+                self.take(at, 1)?;
+                self.position(&mut words)?;
+            }
+            b"vt" => {
+                self.take(at, 1)?;
+                self.uv(&mut words)?;
+            }
+            b"vn" => {
+                self.take(at, 1)?;
+                self.normals.push(DVec3::from_array(words.numbers("normal")?));
+            }
             b"f" | b"fo" => self.face(at, words)?,
             b"o" | b"g" => {
                 self.finish_group();
@@ -150,7 +165,12 @@ impl<'a> Reader<'a> {
                 self.material =
                     Some(NameRef { name: statement.name(), at }).filter(|material| !material.name.is_empty());
             }
-            b"mtllib" => self.meshes.libraries.push(NameRef { name: statement.name(), at }),
+            b"mtllib" => {
+                let name = statement.name();
+                if self.libraries.insert(name.clone()) {
+                    self.meshes.libraries.push(NameRef { name, at });
+                }
+            }
             b"p" | b"l" | b"curv" | b"curv2" | b"surf" => self.leave_out(at),
             _ if WITHOUT_EFFECT.iter().any(|known| known.as_bytes() == keyword) => {}
             _ => {
@@ -159,6 +179,14 @@ impl<'a> Reader<'a> {
                 }
             }
         }
+        Ok(())
+    }
+
+    /// Takes `count` vertices or corners from what a file may ask for.
+    fn take(&mut self, at: At, count: u64) -> Outcome<()> {
+        let left = self.elements_left.checked_sub(count);
+        let message = || format!("vertices and corners: {}", exceeded("vertices", self.limits.vertices));
+        self.elements_left = left.ok_or_else(|| Problem::new(at, message()))?;
         Ok(())
     }
 
@@ -190,6 +218,7 @@ impl<'a> Reader<'a> {
             let corner = self.corner(word)?;
             self.corners.push(corner);
         }
+        self.take(at, self.corners.len() as u64)?;
         if self.corners.len() < 3 {
             self.leave_out(at);
             return Ok(());

@@ -69,6 +69,9 @@ fn describe(meshes: Meshes, file: &Path, builder: &mut SceneBuilder, warnings: &
     SceneDesc { objects, materials: materials.materials, textures: materials.textures.descs, ..SceneDesc::default() }
 }
 
+/// Most material libraries of a file.
+const MOST_LIBRARIES: usize = 1000;
+
 /// The materials of all libraries.
 #[derive(Default)]
 struct Materials {
@@ -85,14 +88,26 @@ struct Materials {
 impl Materials {
     /// Adds what a statement names: one library, whose name may hold blanks, or several.
     fn add(&mut self, library: &NameRef, file: &Path, builder: &mut SceneBuilder, warnings: &mut Warnings) {
-        let names: Vec<&str> = match builder.has_file(&library.name) {
-            true => vec![&library.name],
-            false => library.name.split_ascii_whitespace().collect(),
+        // Some programs write paths as one of the systems they run on has them.
+        let whole = library.name.replace('\\', "/");
+        let names: Vec<&str> = match builder.has_file(&whole) {
+            true => vec![&whole],
+            false => whole.split_ascii_whitespace().collect(),
         };
         for name in names {
             if !self.libraries.insert(name.to_owned()) {
                 continue;
             }
+            if self.libraries.len() > MOST_LIBRARIES {
+                if self.libraries.len() == MOST_LIBRARIES + 1 {
+                    self.incomplete = true;
+                    warnings.push(library.at, format!("only the first {MOST_LIBRARIES} material libraries are read"));
+                }
+                continue;
+            }
+            // Where there is none, one of that name beside the file will do.
+            let alone = name.rsplit('/').next().filter(|alone| !builder.has_file(name) && builder.has_file(alone));
+            let name = alone.unwrap_or(name);
             match builder.read_file(name) {
                 Ok(bytes) => self.read(name, &bytes, library.at, file, builder),
                 Err(error) => {
@@ -107,7 +122,8 @@ impl Materials {
 
     fn read(&mut self, name: &str, bytes: &[u8], at: At, file: &Path, builder: &mut SceneBuilder) {
         self.textures.at = at;
-        let (materials, warnings) = material::read(bytes, &mut self.textures, |file| builder.has_file(file));
+        let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder);
+        let (materials, warnings) = material::read(bytes, folder, &mut self.textures, |file| builder.has_file(file));
         for material in materials {
             match self.places.get(&material.name) {
                 Some(&place) => self.materials[place] = material,

@@ -2,7 +2,7 @@
 
 use crate::scene::desc::map::shortened;
 use crate::scene::desc::problem::At;
-use crate::scene::format::words::Words;
+use crate::scene::format::words::{Words, after_mark};
 
 /// A line that is neither blank nor a comment.
 #[derive(Clone, Debug)]
@@ -24,7 +24,9 @@ impl Statement<'_> {
 
     /// All from a place on as one name.
     pub fn name_from(&self, at: At) -> String {
-        String::from_utf8_lossy(&self.text[at.0..self.words.end().0]).trim().to_owned()
+        let name = String::from_utf8_lossy(&self.text[at.0..self.words.end().0]);
+        // A backslash before the end of a line is none of the name.
+        name.replace("\\\r\n", " ").replace("\\\n", " ").trim().to_owned()
     }
 
     /// The keyword as text for messages.
@@ -35,7 +37,7 @@ impl Statement<'_> {
 
 /// The statements of a text.
 pub fn statements(text: &[u8]) -> impl Iterator<Item = Statement<'_>> {
-    let mut next = 0;
+    let mut next = after_mark(text);
     std::iter::from_fn(move || {
         while next < text.len() {
             let start = next;
