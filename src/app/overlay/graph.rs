@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, history: &History) {
         let height = y(mark);
         painter.hline(rect.x_range(), height, Stroke::new(1.0, Color32::from_rgba_premultiplied(60, 60, 60, 60)));
         let place = Pos2::new(rect.left() + 4.0, height);
-        painter.text(place, Align2::LEFT_CENTER, format!("{mark} ms"), FontId::proportional(10.0), theme::WEAK);
+        painter.text(place, Align2::LEFT_CENTER, format!("{mark} ms"), FontId::proportional(10.0), theme::STRONG);
     }
     let (times, low) = history.summary().map_or_else(|| ("no frame yet".to_owned(), String::new()), words);
     for (line, told) in [(times, SPREAD), (low, ONE_PERCENT_LOW)].into_iter().filter(|(line, _)| !line.is_empty()) {
