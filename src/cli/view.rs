@@ -71,7 +71,10 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
         None
     } else {
         match app::run(window, |closer| interrupt.closes(closer)) {
-            Err(AppError::NoDisplay(reason)) => Some(reason),
+            Err(AppError::NoDisplay(reason)) => {
+                interrupt.check()?;
+                Some(reason)
+            }
             Err(AppError::NoScene(failed)) => return Err(failure(failed)),
             Err(error) => return Err(error.into()),
             Ok(end) => {

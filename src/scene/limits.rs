@@ -7,7 +7,7 @@ pub struct Limits {
     pub file_bytes: u64,
     /// How many bytes a compressed file may have for each of its own, beyond what is always allowed.
     pub expansion: u64,
-    /// Bytes of all decoded textures together.
+    /// Bytes of all decoded textures together, and those that any one takes while it is decoded.
     pub texture_bytes: u64,
     /// Width and height of a texture in texels.
     pub texture_edge: u64,
@@ -55,7 +55,7 @@ const ROWS: &[Row] = &[
     },
     Row {
         name: "texture-bytes",
-        help: "bytes of all decoded textures",
+        help: "bytes of all decoded textures, and of any one while it is decoded",
         default: 1 << 30,
         ceiling: u64::MAX,
         field: |l| &mut l.texture_bytes,

@@ -172,7 +172,10 @@ impl Scenes {
         self.has_scene = true;
         self.outdated = false;
         // That another scene could not be opened stays true while this one is loaded again.
-        self.failure.take_if(|failure| failure.file == arrival.file);
+        self.failure.take_if(|failure| match (&failure.file, &arrival.file) {
+            (Some(failed), Some(file)) => is_same(failed, file),
+            _ => true,
+        });
         let is_odd = !arrival.scene.warnings.is_empty() && arrival.scene.warnings != self.dismissed;
         self.odd = is_odd.then(|| Arc::clone(&arrival.scene));
         self.file.clone_from(&arrival.file);

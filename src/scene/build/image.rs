@@ -26,6 +26,8 @@ enum DecodeError {
     Edge(u64),
     #[error("the scene's textures have {}", exceeded("texture-bytes", *.0))]
     Budget(u64),
+    #[error("bytes that it takes to decode it: {}", exceeded("texture-bytes", *.0))]
+    Effort(u64),
     #[error("{CANCELLED}")]
     Cancelled,
     #[error("the decoder gave up; the file is damaged")]
@@ -42,6 +44,8 @@ enum Key {
     File(PathBuf, Encoding),
     /// Colours and opacity.
     Masked(PathBuf, PathBuf, Encoding),
+    /// Opacity alone.
+    Opacity(PathBuf, Encoding),
     /// By the address of the bytes, which stay where they are until the scene is built.
     Embedded(usize, Encoding),
 }
@@ -131,12 +135,20 @@ impl ImageStore {
             }
             ImageSource::Masked { name, opacity } => {
                 let (path, mask) = (self.files.locate(&name.name)?, self.files.locate(&opacity.name)?);
-                is_bare = path == mask;
                 let key = Key::Masked(path.clone(), mask.clone(), encoding);
                 if self.is_known(&key, waiting) {
                     return Ok(key);
                 }
                 (key, Encoded::File(self.files.read(&path)?), Some(self.files.read(&mask)?))
+            }
+            ImageSource::Opacity(name) => {
+                let path = self.files.locate(&name.name)?;
+                let key = Key::Opacity(path.clone(), encoding);
+                if self.is_known(&key, waiting) {
+                    return Ok(key);
+                }
+                is_bare = true;
+                (key, Encoded::File(self.files.read(&path)?), None)
             }
             ImageSource::Embedded { bytes, .. } => {
                 let key = Key::Embedded(bytes.as_ptr() as usize, encoding);
@@ -167,9 +179,11 @@ impl ImageStore {
                 let needed = |bytes: &[u8]| guarded(|| Needs::of(bytes, &self.limits));
                 let opacity = image.opacity.as_deref().map_or(Ok(Needs::default()), needed)?;
                 let needs = needed(&image.bytes)?.and(opacity);
-                let beyond = || DecodeError::Budget(self.limits.texture_bytes);
-                self.bytes_left.checked_sub(needs.meanwhile).ok_or_else(beyond)?;
-                self.bytes_left = self.bytes_left.checked_sub(needs.kept).ok_or_else(beyond)?;
+                if needs.meanwhile > self.limits.texture_bytes {
+                    return Err(DecodeError::Effort(self.limits.texture_bytes));
+                }
+                let left = self.bytes_left.checked_sub(needs.kept);
+                self.bytes_left = left.ok_or(DecodeError::Budget(self.limits.texture_bytes))?;
                 Ok(needs)
             })
             .collect();
@@ -193,8 +207,10 @@ impl ImageStore {
         key: Result<Key, FileError>,
         warnings: &mut Warnings,
     ) -> Outcome<Arc<Texels>> {
-        let (ImageSource::File(name) | ImageSource::Masked { name, .. } | ImageSource::Embedded { name, .. }) =
-            &image.source;
+        let (ImageSource::File(name)
+        | ImageSource::Masked { name, .. }
+        | ImageSource::Opacity(name)
+        | ImageSource::Embedded { name, .. }) = &image.source;
         let shown = shortened(&name.name);
         let problem = match key {
             Err(error) => format!("cannot read image \"{shown}\": {error}"),
@@ -267,22 +283,29 @@ fn one_line(message: &str) -> String {
 }
 
 fn decode(image: &Waiting, budget: u64) -> Result<Texels, DecodeError> {
-    let mut pixels = decoded(&image.bytes, budget)?.into_rgba8();
+    let own = decoded(&image.bytes, budget)?;
+    let channel = opacity_channel(&own);
+    let mut pixels = own.into_rgba8();
+    if image.is_bare {
+        pixels.pixels_mut().for_each(|pixel| pixel.0 = [u8::MAX, u8::MAX, u8::MAX, pixel.0[channel]]);
+    }
     if let Some(opacity) = &image.opacity {
         let opacity = decoded(opacity, budget)?;
-        let channel = if opacity.color().has_alpha() { 3 } else { 0 };
+        let channel = opacity_channel(&opacity);
         let opacity = opacity.into_rgba8();
         let [across, up] = [(opacity.width(), pixels.width()), (opacity.height(), pixels.height())]
             .map(|(from, to)| move |i: u32| (u64::from(i) * u64::from(from) / u64::from(to)) as u32);
         for (x, y, pixel) in pixels.enumerate_pixels_mut() {
-            if image.is_bare {
-                pixel.0 = [u8::MAX; 4];
-            }
             pixel.0[3] = opacity.get_pixel(across(x), up(y)).0[channel];
         }
     }
     let (width, height) = pixels.dimensions();
     Texels::new(width, height, pixels.into_raw().as_chunks().0, image.encoding, true).ok_or(DecodeError::Size)
+}
+
+/// Which channel of an image, with four of them, says how opaque it is.
+fn opacity_channel(image: &DynamicImage) -> usize {
+    if image.color().has_alpha() { 3 } else { 0 }
 }
 
 /// An image of whatever kind; 16-bit channels are reduced to 8 later.

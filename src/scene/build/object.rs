@@ -74,7 +74,11 @@ impl SceneBuilder {
         let is_shared = match &object.shape {
             ShapeDesc::Mesh(mesh) if cut.is_none() => {
                 let wanted = || !self.progress.is_cancelled();
-                share(&mut self.sharing, mesh, placement, id, &mut parts, &wanted)?
+                let is_shared = share(&mut self.sharing, mesh, placement, id, &mut parts, &wanted)?;
+                if !wanted() {
+                    return Err(Problem::new(object.at, CANCELLED));
+                }
+                is_shared
             }
             _ => false,
         };

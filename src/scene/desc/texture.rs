@@ -52,6 +52,8 @@ pub enum ImageSource {
         /// The file of the opacity, relative to the scene's folder, too.
         opacity: NameRef,
     },
+    /// In a file that holds opacity alone, likewise, of white.
+    Opacity(NameRef),
     /// Within the scene's own file.
     Embedded {
         /// Encoded as in an image file.

@@ -232,7 +232,7 @@ fn files_and_libraries_of_other_programs_are_read() {
     image.save(folder.write("sub/red.png", "")).unwrap();
     folder.write("sub/s.mtl", format!("{mark}newmtl a\nmap_Kd red.png"));
     folder.write("s.mtl", "newmtl a\nKd 1 0 0");
-    for library in [r".\s.mtl", r"sub\s.mtl", r"C:\work\s.mtl", "\\\n s.mtl"] {
+    for library in [r".\s.mtl", r"sub\s.mtl", r"C:\my work\s.mtl", "\\\n s.mtl"] {
         let text = format!("{mark}mtllib {library}\n{TRIANGLE}usemtl \\\r\n a\nf 1 2 3");
         let scene = load(&folder.write("s.obj", text), &LoadOptions::default()).unwrap();
         assert!(scene.warnings.is_empty(), "{library}: {:?}", scene.warnings);
@@ -273,7 +273,9 @@ fn what_an_opacity_map_leaves_out_is_not_there() {
     };
     let (alpha, whole) = seen("map_Kd green.png");
     assert_eq!(alpha, Alpha::Opaque);
-    for library in ["map_Kd green.png\nmap_d holes.png", "map_d holes.png", "map_Kd both.png\nmap_d both.png"] {
+    let two_names = "map_Kd both.png\nmap_d ./both.png";
+    let one_name = "map_Kd both.png\nmap_d both.png";
+    for library in ["map_Kd green.png\nmap_d holes.png", "map_d holes.png", one_name, two_names] {
         let (alpha, rest) = seen(library);
         assert_eq!(alpha, Alpha::Mask(0.5), "{library}");
         assert!((whole * 4 / 10..whole * 6 / 10).contains(&rest), "{library}: {rest} of {whole}");

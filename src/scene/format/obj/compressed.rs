@@ -89,7 +89,7 @@ mod tests {
         assert!(expanded(&long, &limits).unwrap_err().contains("limit file-bytes of 10"));
     }
 
-    /// A last block that stands for `length` times one byte, which is a bomb if there are many of them.
+    /// Of blocks that stand for 131,072 times one byte each.
     #[test]
     fn texts_much_larger_than_their_files_are_refused() {
         let block = (128_u32 << 10 << 3 | 1 << 1).to_le_bytes();

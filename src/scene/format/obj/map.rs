@@ -89,22 +89,29 @@ pub struct Textures {
 impl Textures {
     /// How a material looks a map up.
     pub fn lookup(&mut self, map: Map) -> Lookup<NameRef> {
-        self.masked(map, None)
+        self.texture(map, "", ImageSource::File)
     }
 
-    /// How a material looks a map up whose opacity another file may hold.
-    pub fn masked(&mut self, map: Map, opacity: Option<String>) -> Lookup<NameRef> {
+    /// How a material looks a map up whose opacity another file holds.
+    pub fn masked(&mut self, map: Map, opacity: String) -> Lookup<NameRef> {
+        let by = format!(" masked by {opacity}");
+        let opacity = NameRef { name: opacity, at: self.at };
+        self.texture(map, &by, |name| ImageSource::Masked { name, opacity })
+    }
+
+    /// How a material of one colour looks its opacity up.
+    pub fn opacity(&mut self, map: Map) -> Lookup<NameRef> {
+        self.texture(map, " as opacity", ImageSource::Opacity)
+    }
+
+    fn texture(&mut self, map: Map, kind: &str, source: impl FnOnce(NameRef) -> ImageSource) -> Lookup<NameRef> {
         let Map { file, transform, is_clamped, .. } = map;
         let reference = |name: String| NameRef { name, at: self.at };
-        let mask = opacity.as_ref().map_or(String::new(), |opacity| format!(" masked by {opacity}"));
-        let name = reference(format!("{file}{mask}{}", if is_clamped { ", clamped" } else { "" }));
+        let name = reference(format!("{file}{kind}{}", if is_clamped { ", clamped" } else { "" }));
         if self.names.insert(name.name.clone()) {
             let wrap = if is_clamped { Wrap::Clamp } else { Wrap::Repeat };
             let image = ImageDesc {
-                source: match opacity {
-                    None => ImageSource::File(reference(file)),
-                    Some(opacity) => ImageSource::Masked { name: reference(file), opacity: reference(opacity) },
-                },
+                source: source(reference(file)),
                 sampler: Sampler { wrap: [wrap; 2], ..Sampler::default() },
                 optional: true,
             };

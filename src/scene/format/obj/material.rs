@@ -132,12 +132,8 @@ impl Draft {
             (map, None) => (Alpha::Opaque, map.map(|map| textures.lookup(map))),
             // One image for both has an opacity of its own.
             (Some(map), Some(holes)) if map.file == holes.file => (Alpha::Mask(HOLE), Some(textures.lookup(map))),
-            (Some(map), Some(holes)) => (Alpha::Mask(HOLE), Some(textures.masked(map, Some(holes.file)))),
-            // Opacity alone: the colour is white.
-            (None, Some(holes)) => {
-                let file = holes.file.clone();
-                (Alpha::Mask(HOLE), Some(textures.masked(holes, Some(file))))
-            }
+            (Some(map), Some(holes)) => (Alpha::Mask(HOLE), Some(textures.masked(map, holes.file))),
+            (None, Some(holes)) => (Alpha::Mask(HOLE), Some(textures.opacity(holes))),
         };
         let mut scaled = |map: Map, scale: f32| Scaled { scale: map.bump * scale, lookup: textures.lookup(map) };
         let relief = Relief {

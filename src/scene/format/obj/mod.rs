@@ -90,7 +90,8 @@ impl Materials {
     fn add(&mut self, library: &NameRef, file: &Path, builder: &mut SceneBuilder, warnings: &mut Warnings) {
         // Some programs write paths as one of the systems they run on has them.
         let whole = library.name.replace('\\', "/");
-        let names: Vec<&str> = match builder.has_file(&whole) {
+        let alone = |name: &str| name.rsplit('/').next().unwrap_or_default().to_owned();
+        let names: Vec<&str> = match builder.has_file(&whole) || builder.has_file(&alone(&whole)) {
             true => vec![&whole],
             false => whole.split_ascii_whitespace().collect(),
         };
@@ -106,8 +107,8 @@ impl Materials {
                 continue;
             }
             // Where there is none, one of that name beside the file will do.
-            let alone = name.rsplit('/').next().filter(|alone| !builder.has_file(name) && builder.has_file(alone));
-            let name = alone.unwrap_or(name);
+            let alone = alone(name);
+            let name = if !builder.has_file(name) && builder.has_file(&alone) { &alone } else { name };
             match builder.read_file(name) {
                 Ok(bytes) => self.read(name, &bytes, library.at, file, builder),
                 Err(error) => {
