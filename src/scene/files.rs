@@ -146,7 +146,12 @@ impl Files {
                 let file = files.iter().find(|(name, _)| Path::new(name) == path);
                 Cow::Borrowed(file.ok_or(io::Error::from(io::ErrorKind::NotFound))?.1)
             }
-            Source::Folder(_) => Cow::Owned(self.read_regular(path)?),
+            Source::Folder(_) => {
+                Cow::Owned(self.read_regular(path).map_err(|error| match self.progress.is_cancelled() {
+                    true => FileError::Cancelled,
+                    false => error,
+                })?)
+            }
         };
         let left = self.bytes_left.checked_sub(bytes.len() as u64);
         self.bytes_left = left.ok_or(FileError::TooLarge(self.limit))?;
