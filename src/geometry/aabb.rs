@@ -44,6 +44,16 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// Whether any point lies in both.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && self.max.cmpge(other.min).all()
+    }
+
+    /// The box with its faces moved outward by `distance`.
+    pub fn padded(self, distance: f32) -> Self {
+        Self { min: self.min - distance, max: self.max + distance }
+    }
+
     /// Whether it holds nothing.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()

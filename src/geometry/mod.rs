@@ -8,6 +8,7 @@ pub mod aabb;
 pub mod beam;
 pub mod block;
 pub mod bvh;
+pub mod contact;
 pub mod holes;
 pub mod instance;
 #[cfg(test)]
@@ -15,6 +16,7 @@ mod laws;
 pub mod mesh;
 mod nearest;
 pub mod opaque;
+mod overlap;
 pub mod packet;
 pub mod primitive;
 pub mod ray;
@@ -26,6 +28,7 @@ pub mod visitor;
 
 pub use aabb::Aabb;
 pub use block::{BLOCK, Block, NO_PRIMITIVE, PrimitiveIndex};
+pub use contact::Contacts;
 pub use holes::{HoleMap, Holes, Wrap};
 pub use instance::{Home, Instance, Instances, SharedMesh};
 pub use mesh::Mesh;

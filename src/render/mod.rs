@@ -9,6 +9,7 @@ mod absorption;
 mod accumulate;
 mod adaptive;
 mod brdf;
+mod contact;
 mod direct;
 mod enlarge;
 mod extent;

@@ -27,6 +27,8 @@ pub struct Plan {
     pub flat_mirrors: bool,
     /// Trace refracted rays.
     pub refractions: bool,
+    /// Look for surfaces that touch those that rays hit.
+    pub contacts: bool,
     /// Keep track of the bodies that rays are inside of.
     pub media: bool,
     /// Some body absorbs light.
@@ -94,6 +96,7 @@ impl Plan {
             reflections,
             flat_mirrors: secondary_beams && reflections && tables.flat_mirrors,
             refractions,
+            contacts: !tables.contacts.is_empty(),
             media: !tables.transparent_bodies.is_empty(),
             absorption: tables.transparent_bodies.iter().any(|&object| absorbs(object)),
             textures: tables.materials.iter().any(|m| m.textured),
@@ -180,6 +183,11 @@ impl Plan {
                 self.refractions,
                 "refractions: on, some material is transparent".to_owned(),
                 "refractions: off, nothing is transparent (or they were switched off)",
+            ),
+            say(
+                self.contacts,
+                "contacts: on, some surfaces touch transparent ones".to_owned(),
+                "contacts: off, nothing touches a transparent surface",
             ),
             say(
                 self.media,

@@ -122,6 +122,8 @@ pub struct RayQueue {
     pub sample: Vec<u32>,
     /// The bodies it starts in.
     pub media: Vec<u32>,
+    /// What it meets at once, where surfaces touch; only where the plan looks at contacts.
+    pub contact: Vec<u32>,
     /// The flat primitive that mirrored it, or [`NO_PRIMITIVE`]; only of rays that follow from others.
     pub source: Vec<u32>,
     /// Distance of the hit; its limit on a miss.
@@ -139,6 +141,8 @@ pub struct Lineage<S: Simd> {
     pub sample: S::u32s,
     /// The bodies they start in.
     pub media: S::u32s,
+    /// What they meet at once, if the plan looks at contacts.
+    pub contact: Option<S::u32s>,
     /// The flat primitive that mirrored them, or [`NO_PRIMITIVE`].
     pub source: S::u32s,
     /// How long the way from the eye to their start is.
@@ -163,6 +167,11 @@ impl RayQueue {
             Some(eye) => V3::splat(simd, eye),
             None => self.origin.load(simd, at),
         }
+    }
+
+    /// Where one ray starts.
+    pub fn origin_of(&self, at: usize) -> Vec3 {
+        self.eye.unwrap_or_else(|| self.origin.get(at))
     }
 
     /// What the light of the rays of the packet at `at` is multiplied by on its way to the pixel.
@@ -199,6 +208,7 @@ impl RayQueue {
             }
             self.sample.resize(room, 0);
             self.media.resize(room, 0);
+            self.contact.resize(room, 0);
             self.source.resize(room, NO_PRIMITIVE);
             self.t.resize(room, 0.0);
             self.way.resize(room, 0.0);
@@ -222,6 +232,9 @@ impl RayQueue {
         self.weight.put::<S>(at, mask, weight);
         put_numbers::<S>(&mut self.sample, at, mask, lineage.sample);
         put_numbers::<S>(&mut self.media, at, mask, lineage.media);
+        if let Some(contact) = lineage.contact {
+            put_numbers::<S>(&mut self.contact, at, mask, contact);
+        }
         put_numbers::<S>(&mut self.source, at, mask, lineage.source);
         put::<S>(&mut self.way, at, mask, lineage.way);
         self.len += count::<S>(mask);
@@ -233,6 +246,7 @@ impl RayQueue {
         self.reserve(first + count);
         (self.len, self.eye, self.unweighted) = (first + count, Some(eye), true);
         self.media[first..first + count].fill(media);
+        self.contact[first..first + count].fill(0);
         first
     }
 

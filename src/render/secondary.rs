@@ -1,6 +1,7 @@
 //! The rays that follow from hits: mirrored, and refracted by Snell's law with exact Fresnel terms.
 
 use super::brdf;
+use super::contact::{Contacts, NO_CONTACT};
 use super::frame::Frame;
 use super::gather::{Hits, bits};
 use super::leave;
@@ -37,6 +38,8 @@ pub(super) struct Incident<'a, S: Simd> {
     pub weight: V3<S::f32s>,
     pub sample: S::u32s,
     pub media: S::u32s,
+    /// What touches the surface, if the plan looks at contacts.
+    pub contact: Option<S::u32s>,
     /// The primitive, where it is flat; else [`NO_PRIMITIVE`].
     pub flat: S::u32s,
     /// How long the way from the eye is.
@@ -46,8 +49,8 @@ pub(super) struct Incident<'a, S: Simd> {
 impl<S: Simd> Incident<'_, S> {
     /// What rays that follow belong to.
     #[inline(always)]
-    fn lineage(&self, media: S::u32s, source: S::u32s) -> Lineage<S> {
-        Lineage { sample: self.sample, media, source, way: self.way }
+    fn lineage(&self, media: S::u32s, contact: Option<S::u32s>, source: S::u32s) -> Lineage<S> {
+        Lineage { sample: self.sample, media, contact, source, way: self.way }
     }
 }
 
@@ -79,12 +82,14 @@ pub(super) fn follow<S: Simd>(
     materials: &impl Materials<S>,
     incident: &Incident<'_, S>,
     media: &mut Media,
+    contacts: &Contacts,
     [mirrored, refracted]: [&mut RayQueue; 2],
     counts: &mut RayCounts,
 ) {
     // With a shading normal that leans away, the ray may graze it from behind.
     let cosine = (-incident.direction.dot(incident.normal)).max(0.0);
     let transparent = Transparent::new(simd, frame, hits, materials, incident.spawning.to_bitmask());
+    let mut interface = None;
     let mut split = Split::<S> {
         reflected: mirror_share(simd, frame, materials, incident.skin, cosine),
         refracted: V3::zero(simd),
@@ -92,7 +97,10 @@ pub(super) fn follow<S: Simd>(
     };
     if transparent.lanes != 0 {
         let index = outside_index(simd, frame, incident, &transparent, media);
-        let through = refract(simd, frame, materials, incident, cosine, index, transparent.bodies);
+        if let Some(links) = incident.contact {
+            interface = Interface::new(simd, frame, incident, &transparent, links, contacts, media);
+        }
+        let through = refract(simd, frame, materials, incident, cosine, index, interface.as_ref(), transparent.bodies);
         let lanes = Mask::<S>::from_bitmask(simd, transparent.lanes);
         split.reflected = V3::select(lanes, through.reflected, split.reflected);
         split.refracted = V3::select(lanes, through.refracted, split.refracted);
@@ -111,30 +119,98 @@ pub(super) fn follow<S: Simd>(
     }
 
     if frame.plan.reflections {
-        let weight = incident.weight * split.reflected;
+        let mut weight = incident.weight * split.reflected;
+        if let Some(links) = incident.contact {
+            weight = weight * contacts.filter(simd, frame, links, [incident.position, incident.direction]);
+        }
         let heavy = incident.spawning & heavy(simd, weight, frame.settings.min_weight);
         if heavy.any_true() {
             let direction = hold_unit::<S>(incident.direction + incident.normal.scale(cosine * 2.0));
             let start = leave::start::<S>(incident.position, incident.facing, incident.margin, direction);
-            mirrored.push_lanes::<S>(heavy, start, direction, weight, &incident.lineage(incident.media, incident.flat));
+            let contact = incident.contact.map(|_| S::u32s::splat(simd, NO_CONTACT));
+            let lineage = incident.lineage(incident.media, contact, incident.flat);
+            mirrored.push_lanes::<S>(heavy, start, direction, weight, &lineage);
             counts.reflection += u64::from(heavy.to_bitmask().count_ones());
         }
     }
     if frame.plan.refractions && transparent.lanes != 0 {
-        let weight = incident.weight * (split.refracted * tint);
+        let mut weight = incident.weight * (split.refracted * tint);
+        let mut margin = incident.margin;
+        if let Some(links) = incident.contact {
+            weight = weight * contacts.tint(simd, frame, links, [incident.position, incident.direction]);
+            // Off the last surface of the place, not the first.
+            let towards = -incident.direction.dot(incident.facing);
+            margin += S::f32s::from_fn(simd, |lane| contacts.extent(links.as_slice()[lane])) * towards;
+        }
         let heavy = incident.spawning & heavy(simd, weight, frame.settings.min_weight);
         if heavy.any_true() {
             let crossing = heavy.to_bitmask() & transparent.bodies;
-            let inside = if frame.plan.media && crossing != 0 {
+            let mut inside = if frame.plan.media && crossing != 0 {
                 cross(simd, incident, &transparent.objects, crossing, media)
             } else {
                 incident.media
             };
-            let start = leave::start::<S>(incident.position, -incident.facing, incident.margin, split.inward);
+            if let Some(interface) = &interface {
+                inside = interface.lanes.select(interface.media, inside);
+            }
+            let start = leave::start::<S>(incident.position, -incident.facing, margin, split.inward);
             let nothing = S::u32s::splat(simd, NO_PRIMITIVE);
-            refracted.push_lanes::<S>(heavy, start, split.inward, weight, &incident.lineage(inside, nothing));
+            let contact =
+                incident.contact.map(|links| S::u32s::from_fn(simd, |lane| contacts.next(links.as_slice()[lane])));
+            refracted.push_lanes::<S>(heavy, start, split.inward, weight, &incident.lineage(inside, contact, nothing));
             counts.refraction += u64::from(heavy.to_bitmask().count_ones());
         }
+    }
+}
+
+/// Faces of several bodies in one place: light bends once.
+struct Interface<S: Simd> {
+    /// The lanes that meet such a place.
+    lanes: Mask<S>,
+    /// Index of refraction behind it.
+    index: S::f32s,
+    /// The bodies that a ray is inside of behind it.
+    media: S::u32s,
+}
+
+impl<S: Simd> Interface<S> {
+    #[inline(never)]
+    fn new(
+        simd: S,
+        frame: &Frame<'_>,
+        incident: &Incident<'_, S>,
+        transparent: &Transparent,
+        links: S::u32s,
+        contacts: &Contacts,
+        media: &mut Media,
+    ) -> Option<Self> {
+        let mut found: Option<Self> = None;
+        let leaving = incident.from_behind.to_bitmask();
+        for lane in bits(transparent.bodies) {
+            let faces = contacts.faces(links.as_slice()[lane]);
+            if faces.is_empty() {
+                continue;
+            }
+            let mut cross = |list: MediaList, object: u32, leaves: bool| {
+                if leaves { media.leave(list, object) } else { media.enter(list, object) }
+            };
+            let first = cross(incident.media.as_slice()[lane], transparent.objects[lane], leaving >> lane & 1 == 1);
+            let list = faces
+                .iter()
+                .fold(first, |list, face| cross(list, frame.scene.geometry.object_of(face.primitive), face.leaves));
+            let around = media.current(list);
+            let index = around
+                .map_or(1.0, |body| frame.scene.materials[frame.scene.objects[body as usize].material as usize].ior);
+            let interface = found.get_or_insert_with(|| Self {
+                lanes: Mask::<S>::splat(simd, false),
+                index: S::f32s::splat(simd, 1.0),
+                media: incident.media,
+            });
+            interface.lanes.set(lane, true);
+            interface.index.as_mut_slice()[lane] = index;
+            interface.media.as_mut_slice()[lane] = list;
+        }
+        found
     }
 }
 
@@ -207,6 +283,7 @@ fn outside_index<S: Simd>(
 
 /// Shares and directions at transparent surfaces in surroundings of index `outside`. Only at `bodies` the ray bends.
 #[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what is known of one packet, some of it at compile time")]
 fn refract<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
@@ -214,6 +291,7 @@ fn refract<S: Simd>(
     incident: &Incident<'_, S>,
     cosine: S::f32s,
     outside: S::f32s,
+    interface: Option<&Interface<S>>,
     bodies: u64,
 ) -> Split<S> {
     let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
@@ -221,7 +299,11 @@ fn refract<S: Simd>(
     let inside = materials.row(simd, Row::Ior as usize);
     let leaving = incident.from_behind & bends;
     // The index on the side where the ray comes from, divided by that on the other side.
-    let eta = leaving.select(inside, outside) / leaving.select(outside, inside);
+    let mut behind = leaving.select(outside, inside);
+    if let Some(interface) = interface {
+        behind = interface.lanes.select(interface.index, behind);
+    }
+    let eta = leaving.select(inside, outside) / behind;
 
     let passing = one - eta * eta * (one - cosine * cosine);
     let total = passing.simd_lt(zero) & bends;

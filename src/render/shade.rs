@@ -204,7 +204,8 @@ fn shade_surfaces<S: Simd>(
     worker: &mut Worker,
 ) {
     let lanes = at..at + S::f32s::LEN;
-    let Worker { rays, shadows, color: colors, seen, paint, .. } = worker;
+    let Worker { rays, shadows, color: colors, seen, paint, contacts, .. } = worker;
+    let contact = &rays.contact;
     let paint = *paint;
     let samples = &rays.sample[lanes.clone()];
     let &Incoming { direction, weight, .. } = incoming;
@@ -245,6 +246,13 @@ fn shade_surfaces<S: Simd>(
     let own = V3::select(active, own, background);
     colors.deposit(simd, level == 1, samples, present::<S>(rays, at), own);
 
+    // Light that falls on the surface comes through what lies before it in the same place.
+    let lit_weight = if frame.plan.contacts {
+        let links = S::u32s::from_slice(simd, &contact[lanes.clone()]);
+        covered * contacts.filter(simd, frame, links, [incoming.origin, direction])
+    } else {
+        covered
+    };
     let lit = Lit::<S> {
         active,
         position: surfaces.point.position,
@@ -252,7 +260,7 @@ fn shade_surfaces<S: Simd>(
         margin: leave::margin::<S>(surfaces.point.scale),
         normal: view.normal,
         to_viewer: -direction,
-        weight: covered,
+        weight: lit_weight,
     };
     let reflectance = Reflectance::gather(simd, frame, materials, &skin, opacity);
     let sample = S::u32s::from_slice(simd, samples);
@@ -297,7 +305,7 @@ fn follow<S: Simd>(
         && materials.any(|material| material.secondary)
     {
         let lanes = at..at + S::f32s::LEN;
-        let Worker { rays, mirrored, refracted, media, stats, .. } = worker;
+        let Worker { rays, mirrored, refracted, media, contacts, stats, .. } = worker;
         let primitives = S::u32s::from_slice(simd, hits.primitives);
         let flat = Mask::<S>::from_bitmask(simd, surfaces.flat);
         let active = Mask::<S>::from_bitmask(simd, hits.active);
@@ -318,7 +326,8 @@ fn follow<S: Simd>(
             skin,
             weight: incoming.weight,
             sample: S::u32s::from_slice(simd, &rays.sample[lanes.clone()]),
-            media: S::u32s::from_slice(simd, &rays.media[lanes]),
+            media: S::u32s::from_slice(simd, &rays.media[lanes.clone()]),
+            contact: frame.plan.contacts.then(|| S::u32s::from_slice(simd, &rays.contact[lanes])),
             flat: flat.select(primitives, S::u32s::splat(simd, NO_PRIMITIVE)),
             way: incoming.way,
         };
@@ -332,6 +341,7 @@ fn follow<S: Simd>(
                     materials,
                     &incident,
                     media,
+                    contacts,
                     [mirrored, refracted],
                     &mut stats.rays,
                 );

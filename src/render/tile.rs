@@ -1,6 +1,7 @@
 //! One tile: visibility, then queue after queue of its paths, then bytes. No recursion.
 
 use super::accumulate::{self, Progress};
+use super::contact::{self, Contacts};
 use super::enlarge::Enlargement;
 use super::extent::Lists;
 use super::film::FilmTile;
@@ -30,6 +31,7 @@ pub struct Worker {
     pub(super) found: RayQueue,
     pub(super) shadows: Vec<ShadowQueue>,
     pub(super) media: Media,
+    pub(super) contacts: Contacts,
     pub(super) shadow_scratch: shadow::ShadowScratch,
     /// Colour of each sample of the tile's grid.
     pub(super) color: Colors,
@@ -71,6 +73,8 @@ struct Waiting {
     level: u32,
     /// What they know of the bodies around them lies before this.
     media: MediaMark,
+    /// What touches the surfaces around them lies before this.
+    contacts: contact::Mark,
     rays: RayQueue,
 }
 
@@ -216,6 +220,7 @@ impl Worker {
     /// that depends on nothing else in the tile.
     pub(super) fn shade_paths<S: Simd>(&mut self, simd: S, frame: &Frame<'_>) {
         let mut level = 1;
+        self.contacts.clear();
         loop {
             self.shade_level(simd, frame, level);
             self.queue_followers(frame, level + 1);
@@ -225,6 +230,7 @@ impl Worker {
             let Some(next) = self.waiting.pop() else { break };
             level = next.level;
             self.media.truncate(next.media);
+            self.contacts.truncate(next.contacts);
             self.spare.push(std::mem::replace(&mut self.rays, next.rays));
             let start = Instant::now();
             let certificate = self.stats.stages_ms.certificate;
@@ -244,6 +250,9 @@ impl Worker {
     /// Shades the hits in `rays` run by run, each with its shadow rays: they are few enough to stay in the cache.
     fn shade_level<S: Simd>(&mut self, simd: S, frame: &Frame<'_>, level: u32) {
         let mut last = Instant::now();
+        if frame.plan.contacts {
+            contact::resolve(simd, frame, self);
+        }
         shade::begin(simd, frame, self);
         let rays = self.rays.len();
         // Rays without beams gain nothing from being close together, and would leave packets not full.
@@ -266,14 +275,14 @@ impl Worker {
 
     /// Lets the rays that follow wait, mirrored ones next.
     fn queue_followers(&mut self, frame: &Frame<'_>, level: u32) {
-        let media = self.media.mark();
+        let (media, contacts) = (self.media.mark(), self.contacts.mark());
         for followers in [&mut self.refracted, &mut self.mirrored] {
             if followers.len() > 0 {
                 if frame.keeps_costs {
                     self.ledger.add_all(&followers.sample[..followers.len()]);
                 }
                 let empty = self.spare.pop().unwrap_or_default();
-                self.waiting.push(Waiting { level, media, rays: std::mem::replace(followers, empty) });
+                self.waiting.push(Waiting { level, media, contacts, rays: std::mem::replace(followers, empty) });
             }
         }
     }

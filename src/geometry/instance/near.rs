@@ -1,13 +1,10 @@
 //! The nearest point of an instance.
 
-use super::{Instance, Instances, SharedMesh, SharedTriangle};
+use super::{Instance, Instances, SLACK, SharedMesh, SharedTriangle};
 use crate::geometry::bvh::{Child, Leaf, WIDTH};
 use crate::geometry::nearest::Nearest;
 use crate::geometry::primitive::{Kernel, Triangle};
 use glam::DVec3;
-
-/// Share of all lengths that rounding may take, on the way to the mesh's space and in its boxes; generously.
-const SLACK: f64 = 1e-5;
 
 impl Instances {
     /// Offers the nearest points of an instance's triangles, those too far away left out.

@@ -5,7 +5,8 @@ use crate::geometry::opaque::Listed;
 use crate::geometry::{NO_PRIMITIVE, NextCrossing, Stack};
 use crate::math::V3;
 use crate::render::frame::Frame;
-use crate::render::gather;
+use crate::render::gather::{self, Hits, bits};
+use crate::render::leave;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -48,7 +49,10 @@ pub(super) fn transmittance<S: Simd>(
                 }
                 let primitives = next.closest.primitive;
                 let crossed = gather::transmission(simd, frame, &primitives, [origin, direction], next.closest.t);
-                arriving = V3::select(found, arriving * crossed, arriving);
+                let last = Crossings { primitives: last_primitive, t: last_t };
+                let this = Crossings { primitives, t: next.closest.t };
+                let counts = found & !last.share_an_edge_with(simd, frame, &this, [origin, direction]);
+                arriving = V3::select(counts, arriving * crossed, arriving);
                 let dark = arriving.x.simd_eq(zero) & arriving.y.simd_eq(zero) & arriving.z.simd_eq(zero);
                 limit = (found & !dark).select(limit, zero - 1.0);
                 last_t = found.select(next.closest.t, last_t);
@@ -56,4 +60,47 @@ pub(super) fn transmittance<S: Simd>(
             }
         },
     )
+}
+
+/// A crossing of each lane.
+struct Crossings<S: Simd> {
+    /// What is crossed, or [`NO_PRIMITIVE`].
+    primitives: S::u32s,
+    t: S::f32s,
+}
+
+impl<S: Simd> Crossings<S> {
+    /// The lanes that cross the edge between two faces of an object: both are hit, at the same distance and from the same
+    /// side, and it is one crossing.
+    #[inline(always)]
+    fn share_an_edge_with(
+        &self,
+        simd: S,
+        frame: &Frame<'_>,
+        next: &Self,
+        [origin, direction]: [V3<S::f32s>; 2],
+    ) -> <S::f32s as SimdBase<S>>::Mask {
+        let nothing = S::u32s::splat(simd, NO_PRIMITIVE);
+        let scale = origin.x.abs().max(origin.y.abs()).max(origin.z.abs()) + next.t;
+        let near = (next.t - self.t).simd_le(leave::margin::<S>(scale));
+        let both = self.primitives.simd_ne(nothing) & next.primitives.simd_ne(nothing) & near;
+        let mut same = both.to_bitmask();
+        let geometry = &frame.scene.geometry;
+        for lane in bits(same) {
+            let [a, b] = [self, next].map(|crossings| crossings.primitives.as_slice()[lane]);
+            // One primitive that is met twice is curved: in and out again.
+            if a == b || geometry.object_of(a) != geometry.object_of(b) {
+                same &= !(1 << lane);
+            }
+        }
+        if same != 0 {
+            let from_behind = |crossings: &Self| {
+                let hits = Hits::new(simd, crossings.primitives.as_slice());
+                let normal = gather::surfaces(simd, frame, &hits, origin, direction, crossings.t).point.normal;
+                normal.dot(direction).simd_gt(S::f32s::splat(simd, 0.0)).to_bitmask()
+            };
+            same &= !(from_behind(self) ^ from_behind(next));
+        }
+        <S::f32s as SimdBase<S>>::Mask::from_bitmask(simd, same)
+    }
 }
