@@ -30,6 +30,9 @@ const MOST: usize = 16;
 /// Surfaces touch up to this multiple of the distance by which rays start off a surface.
 const REACH: f32 = 1.5;
 
+/// Distances are known to this share of the coordinates that went into them.
+const ROUNDING: f32 = 1.0 / (1 << 21) as f32;
+
 /// A place in an arena of [`Contacts`].
 pub type Link = u32;
 
@@ -297,7 +300,8 @@ fn gap_and_sides<S: Simd>(
     let hits = Hits::new(simd, primitives);
     let point = surfaces(simd, frame, &hits, origin, direction, t).point;
     let cosine = point.normal.dot(direction);
-    let gap = leave::margin::<S>(point.scale) * REACH / cosine.abs().max(FLATTEST);
+    let rounding = (origin.x.abs().max(origin.y.abs()).max(origin.z.abs()) + t) * ROUNDING;
+    let gap = (leave::margin::<S>(point.scale) * REACH + rounding) / cosine.abs().max(FLATTEST);
     (gap, cosine.simd_gt(S::f32s::splat(simd, 0.0)).to_bitmask())
 }
 

@@ -167,8 +167,8 @@ pub(super) fn follow<S: Simd>(
 struct Interface<S: Simd> {
     /// The lanes that meet such a place.
     lanes: Mask<S>,
-    /// Index of refraction behind it.
-    index: S::f32s,
+    /// Indices of refraction before and behind it.
+    indices: [S::f32s; 2],
     /// The bodies that a ray is inside of behind it.
     media: S::u32s,
 }
@@ -198,16 +198,20 @@ impl<S: Simd> Interface<S> {
             let list = faces
                 .iter()
                 .fold(first, |list, face| cross(list, frame.scene.geometry.object_of(face.primitive), face.leaves));
-            let around = media.current(list);
-            let index = around
-                .map_or(1.0, |body| frame.scene.materials[frame.scene.objects[body as usize].material as usize].ior);
+            let index = |list: MediaList| {
+                let body = media.current(list).map(|body| &frame.scene.objects[body as usize]);
+                body.map_or(1.0, |body| frame.scene.materials[body.material as usize].ior)
+            };
+            let indices = [index(incident.media.as_slice()[lane]), index(list)];
             let interface = found.get_or_insert_with(|| Self {
                 lanes: Mask::<S>::splat(simd, false),
-                index: S::f32s::splat(simd, 1.0),
+                indices: [S::f32s::splat(simd, 1.0); 2],
                 media: incident.media,
             });
             interface.lanes.set(lane, true);
-            interface.index.as_mut_slice()[lane] = index;
+            for (lanes, index) in interface.indices.iter_mut().zip(indices) {
+                lanes.as_mut_slice()[lane] = index;
+            }
             interface.media.as_mut_slice()[lane] = list;
         }
         found
@@ -299,11 +303,13 @@ fn refract<S: Simd>(
     let inside = materials.row(simd, Row::Ior as usize);
     let leaving = incident.from_behind & bends;
     // The index on the side where the ray comes from, divided by that on the other side.
-    let mut behind = leaving.select(outside, inside);
+    let mut indices = [leaving.select(inside, outside), leaving.select(outside, inside)];
     if let Some(interface) = interface {
-        behind = interface.lanes.select(interface.index, behind);
+        for (index, own) in indices.iter_mut().zip(interface.indices) {
+            *index = interface.lanes.select(own, *index);
+        }
     }
-    let eta = leaving.select(inside, outside) / behind;
+    let eta = indices[0] / indices[1];
 
     let passing = one - eta * eta * (one - cosine * cosine);
     let total = passing.simd_lt(zero) & bends;

@@ -6,6 +6,7 @@ mod adversary;
 mod bench;
 mod blit;
 mod cli;
+mod contacts;
 mod corpus;
 mod crowds;
 mod determinism;
