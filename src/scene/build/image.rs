@@ -212,17 +212,21 @@ impl ImageStore {
         | ImageSource::Opacity(name)
         | ImageSource::Embedded { name, .. }) = &image.source;
         let shown = shortened(&name.name);
-        let problem = match key {
-            Err(error) => format!("cannot read image \"{shown}\": {error}"),
+        let (problem, kind) = match key {
+            Err(error) => (format!("cannot read image \"{shown}\": {error}"), "textures missing"),
             Ok(key) => match &self.decoded[&key] {
                 Ok(texels) => return Ok(Arc::clone(texels)),
-                Err(error) => format!("cannot decode image \"{shown}\" (PNG, JPEG, BMP and WebP are known): {error}"),
+                Err(error) => (
+                    format!("cannot decode image \"{shown}\" (PNG, JPEG, BMP and WebP are known): {error}"),
+                    "textures that cannot be decoded",
+                ),
             },
         };
         if !image.optional {
             return Err(Problem::new(name.at, problem));
         }
-        warnings.push(name.at, format!("{problem}; a placeholder is shown"));
+        let first = format!("{shown}; placeholders are shown");
+        warnings.push_kind(name.at, kind, first, format!("{problem}; a placeholder is shown"));
         Texels::placeholder().map(Arc::new).ok_or_else(|| Problem::new(name.at, "no placeholder"))
     }
 }
