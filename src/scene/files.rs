@@ -2,9 +2,10 @@
 
 use super::Limits;
 use super::limits::exceeded;
+use super::names::{self, Folders};
 use super::progress::{Progress, Stamp};
 use std::borrow::Cow;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::fs::File;
 use std::io::{self, Read};
 use std::mem;
@@ -54,6 +55,8 @@ pub struct Files {
     progress: Progress,
     /// How many files were looked for in vain.
     missed: Cell<u32>,
+    /// What is in folders where names were looked for.
+    folders: RefCell<Folders>,
 }
 
 /// Most files looked for in vain that are noted: each takes several questions to the disk.
@@ -77,7 +80,8 @@ impl Files {
 
     fn new(source: Source, folder: PathBuf, limits: &Limits) -> Self {
         let progress = Progress::default();
-        Self { source, folder, bytes_left: limits.file_bytes, limit: limits.file_bytes, progress, missed: Cell::new(0) }
+        let (bytes_left, folders) = (limits.file_bytes, RefCell::default());
+        Self { source, folder, bytes_left, limit: limits.file_bytes, progress, missed: Cell::new(0), folders }
     }
 
     /// The same, with `progress` told what is looked at.
@@ -116,6 +120,26 @@ impl Files {
                 if path.starts_with(scene) { Ok(path) } else { Err(FileError::Outside) }
             }
         }
+    }
+
+    /// The one path of a file that a model's file names in the way of some other program: with backslashes, by a path on
+    /// the machine where it was made, in another letter case or Unicode form. A file of just that name comes first; of
+    /// an absolute path, only what lies beside the scene counts.
+    ///
+    /// # Errors
+    /// As for [`locate`](Self::locate).
+    pub fn find(&self, name: &str) -> Result<PathBuf, FileError> {
+        let error = match self.locate(name) {
+            Ok(path) => return Ok(path),
+            Err(error) => error,
+        };
+        let Source::Folder(scene) = &self.source else { return Err(error) };
+        let mut folders = self.folders.borrow_mut();
+        let found = names::spellings(name).find_map(|parts| {
+            let path = folders.find(&self.folder, scene, &parts)?.canonicalize().ok()?;
+            path.starts_with(scene).then_some(path)
+        });
+        found.ok_or(error)
     }
 
     /// Notes what was looked for in vain, if it may yet come to be there; so may the folder that it would be in.

@@ -16,6 +16,7 @@ pub mod guard;
 pub mod light;
 pub mod limits;
 pub mod material;
+mod names;
 pub mod object;
 pub mod path;
 pub mod pick;

@@ -2,7 +2,7 @@
 
 use crate::scene::desc::map::shortened;
 use crate::scene::desc::problem::{Outcome, Problem, Warnings};
-use crate::scene::desc::{ImageDesc, ImageSource};
+use crate::scene::desc::{ImageDesc, ImageSource, NameRef};
 use crate::scene::files::{CANCELLED, FileError, Files};
 use crate::scene::guard;
 use crate::scene::limits::{Limits, exceeded};
@@ -123,10 +123,15 @@ impl ImageStore {
 
     /// Reads an image that is not known yet, for it to be decoded.
     fn read(&mut self, image: &ImageDesc, encoding: Encoding, waiting: &mut Queue) -> Result<Key, FileError> {
+        // People who write names by hand want to be told of wrong ones; those in models are what a program wrote.
+        let locate = |files: &Files, name: &NameRef| match image.optional {
+            true => files.find(&name.name),
+            false => files.locate(&name.name),
+        };
         let mut is_bare = false;
         let (key, bytes, opacity) = match &image.source {
             ImageSource::File(name) => {
-                let path = self.files.locate(&name.name)?;
+                let path = locate(&self.files, name)?;
                 let key = Key::File(path.clone(), encoding);
                 if self.is_known(&key, waiting) {
                     return Ok(key);
@@ -134,7 +139,7 @@ impl ImageStore {
                 (key, Encoded::File(self.files.read(&path)?), None)
             }
             ImageSource::Masked { name, opacity } => {
-                let (path, mask) = (self.files.locate(&name.name)?, self.files.locate(&opacity.name)?);
+                let (path, mask) = (locate(&self.files, name)?, locate(&self.files, opacity)?);
                 let key = Key::Masked(path.clone(), mask.clone(), encoding);
                 if self.is_known(&key, waiting) {
                     return Ok(key);
@@ -142,7 +147,7 @@ impl ImageStore {
                 (key, Encoded::File(self.files.read(&path)?), Some(self.files.read(&mask)?))
             }
             ImageSource::Opacity(name) => {
-                let path = self.files.locate(&name.name)?;
+                let path = locate(&self.files, name)?;
                 let key = Key::Opacity(path.clone(), encoding);
                 if self.is_known(&key, waiting) {
                     return Ok(key);
@@ -212,17 +217,21 @@ impl ImageStore {
         | ImageSource::Opacity(name)
         | ImageSource::Embedded { name, .. }) = &image.source;
         let shown = shortened(&name.name);
-        let problem = match key {
-            Err(error) => format!("cannot read image \"{shown}\": {error}"),
+        let (problem, kind) = match key {
+            Err(error) => (format!("cannot read image \"{shown}\": {error}"), "textures missing"),
             Ok(key) => match &self.decoded[&key] {
                 Ok(texels) => return Ok(Arc::clone(texels)),
-                Err(error) => format!("cannot decode image \"{shown}\" (PNG, JPEG, BMP and WebP are known): {error}"),
+                Err(error) => (
+                    format!("cannot decode image \"{shown}\" (PNG, JPEG, BMP and WebP are known): {error}"),
+                    "textures that cannot be decoded",
+                ),
             },
         };
         if !image.optional {
             return Err(Problem::new(name.at, problem));
         }
-        warnings.push(name.at, format!("{problem}; a placeholder is shown"));
+        let first = format!("{shown}; placeholders are shown");
+        warnings.push_kind(name.at, kind, first, format!("{problem}; a placeholder is shown"));
         Texels::placeholder().map(Arc::new).ok_or_else(|| Problem::new(name.at, "no placeholder"))
     }
 }

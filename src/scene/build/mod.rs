@@ -123,19 +123,19 @@ impl SceneBuilder {
         &self.progress
     }
 
-    /// The contents of a file that the scene names.
+    /// The contents of a file that a model's file names, in whatever spelling.
     ///
     /// # Errors
-    /// As for [`Files::locate`] and [`Files::read`].
+    /// As for [`Files::find`] and [`Files::read`].
     pub fn read_file(&mut self, name: &str) -> Result<Cow<'static, [u8]>, FileError> {
         let files = self.images.files();
-        let path = files.locate(name)?;
+        let path = files.find(name)?;
         files.read(&path)
     }
 
-    /// Whether there is a file of that name that the scene may read.
+    /// Whether there is a file of that name, in whatever spelling, that the scene may read.
     pub fn has_file(&mut self, name: &str) -> bool {
-        self.images.files().locate(name).is_ok()
+        self.images.files().find(name).is_ok()
     }
 
     /// Adds warnings that have found their place, as long as there are not too many.

@@ -152,7 +152,9 @@ impl<'a> ObjectParts<'a> {
     pub fn finish(self, warnings: &mut Warnings) -> Aabb {
         if self.dropped > 0 {
             let (n, first) = (self.dropped, self.first_dropped);
-            warnings.push(self.at, format!("triangles without area: {n} left out, the first is triangle {first}"));
+            let kind = "objects hold triangles without area, which are left out";
+            let message = format!("triangles without area: {n} left out, the first is triangle {first}");
+            warnings.push_kind(self.at, kind, format!("{n} triangles from triangle {first} on"), message);
         }
         self.bounds
     }

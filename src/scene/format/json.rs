@@ -51,19 +51,10 @@ pub fn read_camera(name: &str, text: &str) -> Result<Camera, SceneError> {
     Ok(named.camera)
 }
 
-/// Reads a text whose structure serde knows, for the format of that name; errors have their line, column and pointer.
-pub(super) fn parse_as<T: DeserializeOwned>(
-    format: &str,
-    file: &Path,
-    bytes: &[u8],
-    nesting: u64,
-) -> Result<T, SceneError> {
-    let document = Document::parse(file, bytes, nesting)?;
-    serde_json::from_str(document.text).map_err(|error| {
-        let at = byte_offset(document.text.as_bytes(), error.line(), error.column());
-        let place = document.places(&[At(at)]).remove(0);
-        SceneError::Invalid { place, message: format!("not valid {format}: {}", without_position(&error)) }
-    })
+/// The outermost value of a text, for formats that read values in their own way; the text's syntax and nesting are
+/// checked. Errors have their line and column.
+pub(super) fn outermost<'t>(file: &'t Path, bytes: &'t [u8], nesting: u64) -> Result<&'t RawValue, SceneError> {
+    Document::parse(file, bytes, nesting).map(|document| document.root)
 }
 
 /// A text of valid JSON syntax.

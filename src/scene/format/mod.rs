@@ -1,5 +1,6 @@
 //! Scene files by format: one row a format, one reader a row.
 
+mod encoding;
 mod gltf;
 mod json;
 mod nff;

@@ -37,17 +37,65 @@ fn children_stand_within_their_parents_and_objects_follow_the_file() {
 }
 
 #[test]
-fn what_a_scale_of_zero_flattens_is_left_out() {
-    let scene = triangle(&format!(r#"{PLAIN}, "nodes": [{{ "mesh": 0, "scale": [1, 0, 1] }}, {{ "mesh": 0 }}]"#));
-    assert_eq!(scene.objects.len(), 1);
-    assert!(warnings(&scene)[0].starts_with("/nodes/0: the node's scale is 0"));
+fn a_scale_of_zero_draws_flat() {
+    for (scale, plane) in [([1, 1, 0], 2), ([1, 0, 1], 1), ([0, 1, 1], 0)] {
+        let mut file = File::default();
+        let positions = file.vectors(&[[0.0; 3], [1.0, 0.0, 0.5], [0.0, 1.0, 0.25]]);
+        let normals = file.vectors(&[[0.0, 0.6, 0.8]; 3]);
+        let scene = file.load(&format!(
+            r#""meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": {positions}, "NORMAL": {normals} }} }}] }}],
+            "nodes": [{{ "mesh": 0, "scale": {scale:?}, "translation": [2, 2, 2] }}, {{ "mesh": 0 }}]"#
+        ));
+        assert_eq!(warnings(&scene), ["/nodes/0: the node's scale is 0 along an axis; it is drawn flat"]);
+        let [flat, whole] = &*scene.objects else { panic!("two objects") };
+        assert_eq!((flat.bounds.min[plane], flat.bounds.max[plane]), (2.0, 2.0));
+        assert!(flat.bounds.max.max_element() == 3.0 && whole.bounds.max == Vec3::new(1.0, 1.0, 0.5));
+        assert_eq!(scene.geometry.indices(), 2);
+    }
+    let nothing = triangle(&format!(r#"{PLAIN}, "nodes": [{{ "mesh": 0, "scale": [1, 0, 0] }}, {{ "mesh": 0 }}]"#));
+    assert!(warnings(&nothing).iter().any(|warning| warning.contains("triangles without area")));
+}
+
+#[test]
+fn what_is_odd_about_a_node_costs_no_other() {
+    for (node, says) in [
+        (r#"{ "mesh": 0, "translation": [1e39, 0, 0] }"#, "/nodes/0/translation: a transform that is not finite"),
+        (r#"{ "mesh": 0, "matrix": [1, 0] }"#, "/nodes/0/matrix: expected a list of 16 numbers; left out"),
+        (r#"{ "mesh": 0, "scale": [1, 1, 1, 1] }"#, "/nodes/0/scale: more than 3 numbers"),
+        (r#"{ "mesh": 0, "rotation": null }"#, ""),
+        (r#"{ "mesh": 0.0, "camera": -1 }"#, "/nodes/0/camera: a number below 0 is taken as none"),
+        (r#"{ "mesh": "0", "skin": 7 }"#, "/nodes/0/skin: skin 7 does not exist"),
+        (r#"{ "mesh": 0, "children": [7, "x"] }"#, "/nodes/0/children/0: node 7 does not exist"),
+        (r#"{ "mesh": 0, "children": [1, "x"] }"#, "/nodes/0/children/1: expected the number of an entry; left out"),
+        (r#"{ "mesh": 0, "name": 7, "children": 1 }"#, "/nodes/0/children: expected a list; left out"),
+        (r#"{ "mesh": 0, "extensions": { "KHR_lights_punctual": {} } }"#, "expected an object with light"),
+    ] {
+        let scene = triangle(&format!(r#"{PLAIN}, "nodes": [{node}, {{}}]"#));
+        assert_eq!(scene.objects.len(), 1, "{node}");
+        let told = warnings(&scene);
+        let is_told = if says.is_empty() { told.is_empty() } else { told.iter().any(|told| told.contains(says)) };
+        assert!(is_told, "{node}: {told:?}");
+    }
+    let far = r#"{ "mesh": 0, "scale": [1e30, 1, 1], "children": [1] }, { "mesh": 0, "scale": [1e30, 1, 1] }"#;
+    let scene = triangle(&format!(r#"{PLAIN}, "nodes": [{far}]"#));
+    assert_eq!(
+        (scene.objects.len(), &*warnings(&scene)[0]),
+        (1, "/nodes/1: in the world, the mesh of the node reaches beyond 3.4e38; left out")
+    );
+    let none = triangle(&format!(r#"{PLAIN}, "nodes": [7, null, {{ "mesh": 0 }}, {{ "mesh": 9 }}], "scene": 3"#));
+    assert_eq!(none.objects.len(), 1);
+    for pointer in
+        ["/scene: scene 3", "/nodes/0: damaged: expected an object", "/nodes/1: null", "/nodes/3/mesh: mesh 9"]
+    {
+        assert!(warnings(&none).iter().any(|told| told.starts_with(pointer)), "{pointer}: {:?}", warnings(&none));
+    }
 }
 
 #[test]
 fn nodes_in_circles_and_with_two_parents_are_entered_once() {
     for (nodes, objects, pointer) in [
-        (r#"[{ "mesh": 0, "children": [0] }]"#, 0, ""),
-        (r#"[{ "mesh": 0, "children": [1] }, { "children": [0] }]"#, 0, ""),
+        (r#"[{ "mesh": 0, "children": [0] }]"#, 1, "/nodes/0/children/0"),
+        (r#"[{ "mesh": 0, "children": [1] }, { "children": [0] }]"#, 1, "/nodes/1/children/0"),
         (r#"[{ "children": [1, 1] }, { "mesh": 0 }]"#, 1, "/nodes/0/children/1"),
         (r#"[{ "children": [2] }, { "children": [2] }, { "mesh": 0 }]"#, 1, "/nodes/1/children/0"),
     ] {

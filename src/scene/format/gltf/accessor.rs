@@ -1,10 +1,10 @@
 //! Accessors: typed elements in the bytes of buffer views, dense or sparse, at any stride, of any number type.
 //!
 //! Everything a file says of offsets, strides and counts is computed in u64 with overflow checked, and compared with the
-//! bytes that are really there before any memory is taken.
+//! bytes that are really there before any memory is taken. Elements beyond those bytes are missing; the others are read.
 
-use super::document::{Document, get, room, to_usize};
-use super::fault::{Fault, Read};
+use super::document::{Document, View, get, room, to_usize};
+use super::fault::{Fault, Notes, Read};
 use gltf::json::accessor::{ComponentType, Type, sparse};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
@@ -37,7 +37,14 @@ pub enum Which<'a> {
 struct Strided<'d> {
     bytes: &'d [u8],
     stride: usize,
+    /// The file gives a distance by which they would overlap.
+    is_packed: bool,
 }
+
+/// Stands for what is no index.
+pub const NO_INDEX: u32 = u32::MAX;
+/// What is done about a stride by which elements overlap.
+const PACKED: &str = "byteStride is less than an element; the elements are taken as packed";
 
 /// Elements that replace others.
 struct Sparse<'d> {
@@ -48,8 +55,13 @@ struct Sparse<'d> {
 }
 
 impl<'d> Accessor<'d> {
-    /// Opens an accessor; `by` points at who asks.
-    pub fn open(document: &'d Document, index: Index<json::Accessor>, by: fmt::Arguments) -> Read<Self> {
+    /// Opens an accessor that has at least one element; `by` points at who asks.
+    pub fn open(
+        document: &'d Document,
+        index: Index<json::Accessor>,
+        by: fmt::Arguments,
+        notes: &mut Notes,
+    ) -> Read<Self> {
         let accessor = get(&document.root.accessors, index, "accessor", by)?;
         let i = index.value();
         let Checked::Valid(kind) = accessor.type_ else {
@@ -60,26 +72,47 @@ impl<'d> Accessor<'d> {
             return Err(Fault::new(format!("/accessors/{i}/componentType"), message));
         };
         let component = component.0;
-        let count = accessor.count.0;
-        if count == 0 {
+        let wanted = accessor.count.0;
+        if wanted == 0 {
             return Err(Fault::new(format!("/accessors/{i}/count"), "count is 0; expected at least 1"));
         }
-        if accessor.buffer_view.is_none() {
-            document.take_zeros(count, format_args!("/accessors/{i}/count"))?;
-        }
         let size = (component.size() * kind.multiplicity()) as u64;
-        let dense = match accessor.buffer_view {
-            None => None,
+        let (dense, count) = match accessor.buffer_view {
+            None => {
+                document.take_zeros(wanted, format_args!("/accessors/{i}/count"))?;
+                (None, wanted)
+            }
             Some(view) => {
                 let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
-                let by = format_args!("/accessors/{i}/bufferView");
-                Some(Strided::open(document, view, offset, count, size, by)?)
+                let view = document.view(view, format_args!("/accessors/{i}/bufferView"), notes)?;
+                let (dense, there) = Strided::open(view, offset, size);
+                if dense.is_packed {
+                    notes.add(format!("/accessors/{i}/bufferView"), PACKED);
+                }
+                if there == 0 {
+                    let message = "the accessor lies beyond the bytes of its buffer view";
+                    return Err(Fault::new(format!("/accessors/{i}/bufferView"), message));
+                }
+                (Some(dense), wanted.min(there))
             }
         };
+        if count < wanted {
+            let message =
+                format!("count is {wanted}, but there are bytes for {count} elements; the others are missing");
+            notes.add_kind(format!("/accessors/{i}/count"), "accessors hold less than they say", &*message, &*message);
+        }
         let sparse = match &accessor.sparse {
-            None => None,
-            Some(sparse) => Some(Sparse::open(document, sparse, i, size)?),
+            Some(sparse) if sparse.count.0 > 0 => {
+                let opened = Sparse::open(document, sparse, i, size, notes);
+                notes.attempt(opened, "sparse parts of accessors left out")?
+            }
+            _ => None,
         };
+        let is_beyond = |place: &u32| u64::from(*place) >= count;
+        if sparse.as_ref().is_some_and(|sparse| sparse.places().iter().any(is_beyond)) {
+            let pointer = format!("/accessors/{i}/sparse/indices");
+            notes.add(pointer, "indices of elements that are not there; they are left out");
+        }
         let normalized = accessor.normalized;
         Ok(Self { document, number: i, count: to_usize(count), kind, component, normalized, dense, sparse })
     }
@@ -89,7 +122,17 @@ impl<'d> Accessor<'d> {
         self.count
     }
 
-    /// Vectors of `N` numbers. Whole numbers are taken as shares of their greatest where the accessor says so.
+    /// How many numbers an element has.
+    pub fn width(&self) -> usize {
+        self.kind.multiplicity()
+    }
+
+    /// Whether elements are whole numbers that are never below 0.
+    pub fn is_unsigned(&self) -> bool {
+        matches!(self.component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
+    }
+
+    /// Vectors of `N` numbers, which may be of any value. Whole numbers are taken as shares of their greatest where the accessor says so.
     pub fn vectors<const N: usize>(&self, which: Which) -> Read<Vec<[f32; N]>> {
         self.decode(which, self.normalized)
     }
@@ -110,19 +153,25 @@ impl<'d> Accessor<'d> {
         }
     }
 
-    /// Whole numbers, `N` an element.
+    /// Whole numbers, `N` an element; [`NO_INDEX`] for any other number.
     pub fn integers<const N: usize>(&self, which: Which) -> Read<Vec<[u32; N]>> {
-        let unsigned = matches!(self.component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
-        self.expect(unsigned, "componentType", "expected an unsigned type: 5121, 5123 or 5125")?;
+        let whole = |number: i32| u32::try_from(number).unwrap_or(NO_INDEX);
         self.read(which, |strided, elements| match self.component {
             ComponentType::U8 => strided.copy(elements, |[b]| u32::from(b)),
+            ComponentType::I8 => strided.copy(elements, |b| whole(i8::from_le_bytes(b).into())),
             ComponentType::U16 => strided.copy(elements, |b| u32::from(u16::from_le_bytes(b))),
-            _ => strided.copy(elements, u32::from_le_bytes),
+            ComponentType::I16 => strided.copy(elements, |b| whole(i16::from_le_bytes(b).into())),
+            ComponentType::U32 => strided.copy(elements, u32::from_le_bytes),
+            ComponentType::F32 => strided.copy(elements, |b| {
+                let number = f32::from_le_bytes(b);
+                let is_whole = number.fract() == 0.0 && (0.0..4e9).contains(&number);
+                if is_whole { number as u32 } else { NO_INDEX }
+            }),
         })
     }
 
     fn decode<const N: usize>(&self, which: Which, normalized: bool) -> Read<Vec<[f32; N]>> {
-        let elements = self.read(which, |strided, elements: &mut [[f32; N]]| match (self.component, normalized) {
+        self.read(which, |strided, elements: &mut [[f32; N]]| match (self.component, normalized) {
             (ComponentType::F32, _) => strided.copy(elements, f32::from_le_bytes),
             (ComponentType::U8, true) => strided.copy(elements, |[b]| f32::from(b) / 255.0),
             (ComponentType::U8, false) => strided.copy(elements, |[b]| f32::from(b)),
@@ -137,32 +186,22 @@ impl<'d> Accessor<'d> {
             }
             (ComponentType::I16, false) => strided.copy(elements, |b| f32::from(i16::from_le_bytes(b))),
             (ComponentType::U32, _) => strided.copy(elements, |b| u32::from_le_bytes(b) as f32),
-        })?;
-        match elements.iter().position(|element| !element.iter().all(|v| v.is_finite())) {
-            None => Ok(elements),
-            Some(at) => {
-                let message = format!("element {at} is {:?}; its numbers must be finite", elements[at]);
-                Err(Fault::new(format!("/accessors/{}", self.number), message))
-            }
-        }
+        })
     }
 
-    /// The elements asked for: the dense ones, and the sparse ones over them.
+    /// The elements asked for: the dense ones, and the sparse ones over them. Of elements that are wider the first numbers
+    /// are taken; those that are not there are 0.
     fn read<T: Copy + Default, const N: usize>(
         &self,
         which: Which,
         copy: impl Fn(&Strided, &mut [[T; N]]),
     ) -> Read<Vec<[T; N]>> {
-        self.expect(self.kind.multiplicity() == N, "type", &format!("expected {N} numbers an element"))?;
-        let pointer = format_args!("/accessors/{}/count", self.number);
-        if let Which::These(places) = which
-            && let Some(place) = places.iter().find(|place| **place as usize >= self.count)
-        {
-            return Err(Fault::new(
-                pointer.to_string(),
-                format!("count is {}; a vertex has number {place}", self.count),
-            ));
+        let width = self.width();
+        if width < N {
+            let message = format!("expected {N} numbers an element, found {width}");
+            return Err(Fault::new(format!("/accessors/{}/type", self.number), message));
         }
+        let pointer = format_args!("/accessors/{}/count", self.number);
         if let (Which::These(places), Some(dense), None) = (which, &self.dense, &self.sparse) {
             self.document.take_elements(places.len() as u64, pointer)?;
             let mut elements = room(places.len(), pointer)?;
@@ -184,61 +223,36 @@ impl<'d> Accessor<'d> {
             values.resize(sparse.count, [T::default(); N]);
             copy(&sparse.values, &mut values);
             for (place, value) in sparse.places().into_iter().zip(values) {
-                let Some(element) = elements.get_mut(place as usize) else {
-                    let message = format!("index {place} names none of the {} elements", self.count);
-                    return Err(Fault::new(format!("/accessors/{}/sparse/indices", self.number), message));
-                };
-                *element = value;
+                if let Some(element) = elements.get_mut(place as usize) {
+                    *element = value;
+                }
             }
         }
         Ok(match which {
             Which::All => elements,
-            Which::These(places) => places.iter().map(|place| elements[*place as usize]).collect(),
+            Which::These(places) => {
+                places.iter().map(|place| elements.get(*place as usize).copied().unwrap_or([T::default(); N])).collect()
+            }
         })
-    }
-
-    fn expect(&self, holds: bool, key: &str, message: &str) -> Read<()> {
-        match holds {
-            true => Ok(()),
-            false => Err(Fault::new(format!("/accessors/{}/{key}", self.number), message)),
-        }
     }
 }
 
 impl<'d> Strided<'d> {
-    /// `count` elements of `size` bytes each, from `offset` on in a buffer view.
-    fn open(
-        document: &'d Document,
-        view: Index<json::buffer::View>,
-        offset: u64,
-        count: u64,
-        size: u64,
-        by: fmt::Arguments,
-    ) -> Read<Self> {
-        let (bytes, stride) = document.view(view, by)?;
+    /// Elements of `size` bytes each, from `offset` on in a buffer view, and how many there are.
+    fn open(view: View<'d>, offset: u64, size: u64) -> (Self, u64) {
+        let bytes = view.bytes.get(to_usize(offset)..).unwrap_or_default();
+        let stride = view.stride.filter(|stride| *stride >= size);
+        // A stride of 0 says that elements are packed: so it was in glTF 1.0.
+        let is_packed = stride.is_none() && view.stride.is_some_and(|stride| stride != 0);
         let stride = stride.unwrap_or(size);
-        if stride < size {
-            let pointer = format!("/bufferViews/{}/byteStride", view.value());
-            return Err(Fault::new(pointer, format!("byteStride {stride} is less than an element's {size} bytes")));
-        }
-        let length = (count - 1).checked_mul(stride).and_then(|start| start.checked_add(size));
-        let end = length.and_then(|length| offset.checked_add(length));
-        let own = end.and_then(|end| bytes.get(to_usize(offset)..to_usize(end)));
-        let bytes = own.ok_or_else(|| {
-            let message = format!(
-                "{count} elements of {size} bytes, {stride} apart from byte {offset}, reach beyond buffer view {}, which has {}",
-                view.value(),
-                bytes.len()
-            );
-            Fault::new(by.to_string(), message)
-        })?;
-        Ok(Self { bytes, stride: to_usize(stride) })
+        let count = (bytes.len() as u64).checked_sub(size).map_or(0, |rest| rest / stride + 1);
+        (Self { bytes, stride: to_usize(stride), is_packed }, count)
     }
 
     /// Those from element `place` on; none beyond the last.
     fn from(&self, place: u32) -> Self {
         let start = (place as usize).saturating_mul(self.stride);
-        Self { bytes: self.bytes.get(start..).unwrap_or_default(), stride: self.stride }
+        Self { bytes: self.bytes.get(start..).unwrap_or_default(), ..*self }
     }
 
     /// Copies the first elements there are, number by number.
@@ -263,24 +277,30 @@ impl<'d> Sparse<'d> {
         places.into_iter().map(|[place]| place).collect()
     }
 
-    fn open(document: &'d Document, sparse: &sparse::Sparse, accessor: usize, size: u64) -> Read<Self> {
+    fn open(
+        document: &'d Document,
+        sparse: &sparse::Sparse,
+        accessor: usize,
+        size: u64,
+        notes: &mut Notes,
+    ) -> Read<Self> {
         let sparse::Sparse { count, indices, values, .. } = sparse;
         let at = |key: &str| format!("/accessors/{accessor}/sparse/{key}");
-        if count.0 == 0 {
-            return Err(Fault::new(at("count"), "count is 0; expected at least 1"));
-        }
         let Checked::Valid(index_type) = indices.component_type else {
             return Err(Fault::new(at("indices/componentType"), "expected an unsigned type: 5121, 5123 or 5125"));
         };
         let index_type = index_type.0;
-        let open = |view, offset, size, key| {
-            Strided::open(document, view, offset, count.0, size, format_args!("/accessors/{accessor}/sparse/{key}"))
+        let mut open = |view, offset, size, key: &str| {
+            let view = document.view(view, format_args!("/accessors/{accessor}/sparse/{key}"), notes)?;
+            Ok(Strided::open(view, offset, size))
         };
-        Ok(Self {
-            indices: open(indices.buffer_view, indices.byte_offset.0, index_type.size() as u64, "indices")?,
-            index_type,
-            values: open(values.buffer_view, values.byte_offset.0, size, "values")?,
-            count: to_usize(count.0),
-        })
+        let (indices, first) = open(indices.buffer_view, indices.byte_offset.0, index_type.size() as u64, "indices")?;
+        let (values, second) = open(values.buffer_view, values.byte_offset.0, size, "values")?;
+        let there = first.min(second).min(count.0);
+        if there < count.0 {
+            let message = format!("count is {}, but there are bytes for {there}; the others are left out", count.0);
+            notes.add(at("count"), message);
+        }
+        Ok(Self { indices, index_type, values, count: to_usize(there) })
     }
 }

@@ -1,7 +1,7 @@
 //! Cameras at their nodes.
 
 use super::document::{Document, get};
-use super::fault::{Fault, Read, Report};
+use super::fault::{Read, Report};
 use super::nodes::Nodes;
 use crate::geometry::Aabb;
 use crate::scene::{Camera, NamedCamera};
@@ -22,20 +22,22 @@ pub fn cameras(
     let mut cameras: Vec<NamedCamera> = Vec::new();
     let bounds = LazyCell::new(bounds);
     for &node in &nodes.order {
-        let own = &document.root.nodes[node];
+        let Some(own) = &document.root.nodes[node] else { continue };
         let (Some(index), Some(world)) = (own.camera, &nodes.worlds[node]) else { continue };
-        let camera = get(&document.root.cameras, index, "camera", format_args!("/nodes/{node}/camera"))?;
+        let named = get(&document.root.cameras, index, "camera", format_args!("/nodes/{node}/camera"));
+        let Some(named) = report.attempt(named, "cameras left out")? else { continue };
         let pointer = format!("/cameras/{}", index.value());
         let (eye, forward, up) = pose(world);
-        let fov = match (&camera.type_, &camera.perspective, &camera.orthographic) {
+        let fov = match (&named.type_, &named.perspective, &named.orthographic) {
             (Checked::Valid(Type::Perspective), Some(perspective), _) => f64::from(perspective.yfov).to_degrees(),
             (Checked::Valid(Type::Orthographic), _, Some(orthographic)) => {
                 report.warn(&pointer, "an orthographic camera; its view is shown in perspective");
                 fov_of(orthographic, eye, forward, *bounds)
             }
             _ => {
-                let message = "expected type perspective or orthographic, and an entry of that name";
-                return Err(Fault::new(pointer, message));
+                let message = "expected type perspective or orthographic, and an entry of that name; left out";
+                report.warn(pointer, message);
+                continue;
             }
         };
         // Far from the origin a point one metre away would round to a coarse direction.
@@ -51,7 +53,7 @@ pub fn cameras(
             report.warn(&pointer, "the camera sees nothing: its yfov or its node is of no use; left out");
             continue;
         }
-        let name = document.root.cameras[index.value()].name.clone().or_else(|| own.name.clone());
+        let name = named.name.clone().or_else(|| own.name.clone());
         let name = name.unwrap_or_else(|| format!("camera {}", cameras.len()));
         cameras.push(NamedCamera { name, camera });
     }

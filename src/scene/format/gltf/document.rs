@@ -3,8 +3,8 @@
 //! Only the crate's plain types are used. Its own readers of buffers, accessors and nodes trust what they read: they
 //! panic on strides, types and indices that do not fit, and follow nodes in circles.
 
-use super::fault::{Fault, Read};
-use super::root::Root;
+use super::fault::{Fault, Notes, Read};
+use super::root::{Buffer, Root};
 use super::uri::{self, Target};
 use crate::scene::desc::map::shortened;
 use crate::scene::files::FileError;
@@ -30,15 +30,29 @@ pub struct Document<'a> {
 /// Most elements without bytes of all uses of accessors together: nothing else would bound what a few words ask for.
 const MOST_ZEROS: u64 = 1 << 22;
 
+/// A part of a buffer.
+#[derive(Clone, Copy)]
+pub struct View<'d> {
+    /// Its bytes, as far as they are there.
+    pub bytes: &'d [u8],
+    /// How far apart its elements are, if it says so.
+    pub stride: Option<u64>,
+}
+
 impl<'a> Document<'a> {
     /// Takes the buffers of `root` from `bin`, the bytes that came with it, and by `read_file`.
     pub fn new(
         root: Root,
         bin: Option<&'a [u8]>,
         limits: &Limits,
+        notes: &mut Notes,
         mut read_file: impl FnMut(&str) -> Result<Cow<'static, [u8]>, FileError>,
     ) -> Self {
-        let buffers = (0..).zip(&root.buffers).map(|(i, buffer)| load(i, buffer, bin, &mut read_file)).collect();
+        let mut load = |(i, buffer): (usize, &Option<Buffer>)| {
+            let damaged = || Fault::new(format!("/buffers/{i}"), "the buffer is damaged");
+            load(i, buffer.as_ref().ok_or_else(damaged)?, bin, notes, &mut read_file)
+        };
+        let buffers = root.buffers.iter().enumerate().map(&mut load).collect();
         let element_limit = limits.vertices;
         Self {
             root,
@@ -49,24 +63,30 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The bytes of a buffer view, and how far apart its elements are, if it says so. `by` points at who asks.
-    pub fn view(&self, index: Index<buffer::View>, by: fmt::Arguments) -> Read<(&[u8], Option<u64>)> {
+    /// A buffer view; one that reaches beyond its buffer ends with it. `by` points at who asks.
+    pub fn view(&self, index: Index<buffer::View>, by: fmt::Arguments, notes: &mut Notes) -> Read<View<'_>> {
         let view = get(&self.root.buffer_views, index, "buffer view", by)?;
         let i = index.value();
         get(&self.root.buffers, view.buffer, "buffer", format_args!("/bufferViews/{i}/buffer"))?;
         let buffer = self.buffers[view.buffer.value()].as_ref().map_err(Fault::clone)?;
         let start = view.byte_offset.map_or(0, |offset| offset.0);
-        let range = start.checked_add(view.byte_length.0).and_then(|end| buffer.get(to_usize(start)..to_usize(end)));
-        let bytes = range.ok_or_else(|| {
+        let rest = buffer.get(to_usize(start)..).unwrap_or_default();
+        let bytes = rest.get(..to_usize(view.byte_length.0)).unwrap_or(rest);
+        if (bytes.len() as u64) < view.byte_length.0 {
             let message = format!(
-                "{} bytes from byte {start} reach beyond buffer {}, which has {}",
+                "{} bytes from byte {start} reach beyond buffer {}, which has {}; the rest is missing",
                 view.byte_length.0,
                 view.buffer.value(),
                 buffer.len()
             );
-            Fault::new(format!("/bufferViews/{i}"), message)
-        })?;
-        Ok((bytes, view.byte_stride.map(|stride| stride.0 as u64)))
+            notes.add_kind(
+                format!("/bufferViews/{i}"),
+                "buffer views reach beyond their buffers",
+                &*message,
+                &*message,
+            );
+        }
+        Ok(View { bytes, stride: view.byte_stride.map(|stride| stride.0 as u64) })
     }
 
     /// How many bytes the buffers have.
@@ -80,7 +100,7 @@ impl<'a> Document<'a> {
             return Ok(());
         }
         let message = format!("vertices and indices: {}", exceeded("vertices", self.element_limit));
-        Err(Fault::new(pointer.to_string(), message))
+        Err(Fault::fatal(pointer.to_string(), message))
     }
 
     /// Takes `count` elements from what a file may ask for without giving their bytes.
@@ -91,19 +111,24 @@ impl<'a> Document<'a> {
         let message = format!(
             "{count} elements without a bufferView; expected at most {MOST_ZEROS} in the whole file, each use of them counted"
         );
-        Err(Fault::new(pointer.to_string(), message))
+        Err(Fault::fatal(pointer.to_string(), message))
     }
 }
 
 /// The entry of a list that something points to; `by` points at who does.
-pub fn get<'d, T>(list: &'d [T], index: Index<T>, what: &str, by: fmt::Arguments) -> Read<&'d T> {
-    list.get(index.value()).ok_or_else(|| {
-        let range = match list.len() {
-            0 => format!("the file has no {what}"),
-            n => format!("expected a number from 0 to {}", n - 1),
-        };
-        Fault::new(by.to_string(), format!("{what} {} does not exist; {range}", index.value()))
-    })
+pub fn get<'d, T, U>(list: &'d [Option<T>], index: Index<U>, what: &str, by: fmt::Arguments) -> Read<&'d T> {
+    let i = index.value();
+    match list.get(i) {
+        Some(Some(entry)) => Ok(entry),
+        Some(None) => Err(Fault::new(by.to_string(), format!("{what} {i} is damaged"))),
+        None => {
+            let range = match list.len() {
+                0 => format!("the file has no {what}"),
+                n => format!("expected a number from 0 to {}", n - 1),
+            };
+            Err(Fault::new(by.to_string(), format!("{what} {i} does not exist; {range}")))
+        }
+    }
 }
 
 /// Takes `count` from what is left; false where that is less.
@@ -116,7 +141,7 @@ pub fn room<T>(count: usize, pointer: fmt::Arguments) -> Read<Vec<T>> {
     let mut room = Vec::new();
     match room.try_reserve_exact(count) {
         Ok(()) => Ok(room),
-        Err(_) => Err(Fault::new(pointer.to_string(), format!("there is no memory for {count} vertices"))),
+        Err(_) => Err(Fault::fatal(pointer.to_string(), format!("there is no memory for {count} vertices"))),
     }
 }
 
@@ -127,34 +152,61 @@ pub fn to_usize(value: u64) -> usize {
 
 fn load<'a>(
     i: usize,
-    buffer: &buffer::Buffer,
+    buffer: &Buffer,
     bin: Option<&'a [u8]>,
+    notes: &mut Notes,
     read_file: &mut impl FnMut(&str) -> Result<Cow<'static, [u8]>, FileError>,
 ) -> Read<Cow<'a, [u8]>> {
-    let fault = |message: String| Fault::new(format!("/buffers/{i}"), message);
+    let pointer = || format!("/buffers/{i}");
     let bytes = match &buffer.uri {
         // Only the first buffer may be the bytes that came with the JSON.
         None => match bin {
             Some(bin) if i == 0 => Cow::Borrowed(bin),
-            _ => return Err(fault("the buffer has no uri, and no bytes came with the file for it".to_owned())),
+            _ => return Err(Fault::new(pointer(), "the buffer has no uri, and no bytes came with the file for it")),
         },
-        Some(uri) => match uri::read(uri).map_err(fault)? {
+        Some(uri) => match uri::read(uri).map_err(|message| Fault::new(pointer(), message))? {
             Target::Bytes(bytes) => Cow::Owned(bytes),
-            Target::File(name) => {
-                read_file(&name).map_err(|error| fault(format!("cannot read \"{}\": {error}", shortened(&name))))?
-            }
+            Target::File(names) => read_first(&names, read_file).map_err(|error| {
+                let message = format!("cannot read \"{}\": {error}", shortened(&names[0]));
+                match error {
+                    FileError::TooLarge(_) | FileError::Cancelled => Fault::fatal(pointer(), message),
+                    _ => Fault::new(pointer(), message),
+                }
+            })?,
         },
     };
-    let wanted = buffer.byte_length.0;
+    let Some(wanted) = buffer.byte_length else {
+        notes.add(pointer(), "a buffer without byteLength; all its bytes are taken");
+        return Ok(bytes);
+    };
     if (bytes.len() as u64) < wanted {
-        return Err(fault(format!("byteLength is {wanted}, but there are only {} bytes", bytes.len())));
+        let message = format!("byteLength is {wanted}, but there are only {} bytes; the rest is missing", bytes.len());
+        notes.add_kind(pointer(), "buffers are shorter than they say", &*message, &*message);
     }
+    let wanted = to_usize(wanted).min(bytes.len());
     Ok(match bytes {
-        Cow::Borrowed(bytes) => Cow::Borrowed(&bytes[..to_usize(wanted)]),
+        Cow::Borrowed(bytes) => Cow::Borrowed(&bytes[..wanted]),
         Cow::Owned(mut bytes) => {
-            bytes.truncate(to_usize(wanted));
+            bytes.truncate(wanted);
             bytes.shrink_to_fit();
             Cow::Owned(bytes)
         }
     })
+}
+
+/// The file that the first of some names leads to; where none does, what is wrong with the first.
+fn read_first(
+    names: &[String],
+    read_file: &mut impl FnMut(&str) -> Result<Cow<'static, [u8]>, FileError>,
+) -> Result<Cow<'static, [u8]>, FileError> {
+    let mut first = None;
+    for name in names {
+        match read_file(name) {
+            Err(error) if !matches!(error, FileError::TooLarge(_) | FileError::Cancelled) => {
+                first.get_or_insert(error);
+            }
+            read => return read,
+        }
+    }
+    Err(first.unwrap_or(FileError::Outside))
 }

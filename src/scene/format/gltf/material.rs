@@ -6,17 +6,19 @@ use super::texture::{Reference, Textures};
 use crate::scene::desc::{MaterialDesc, NameRef};
 use crate::scene::material::{Alpha, ColorSource, Lookup, Model, Scaled};
 use glam::Vec3;
-use gltf::json;
 use gltf::json::extensions::material::PbrSpecularGlossiness;
 use gltf::json::extensions::texture::TextureTransform;
 use gltf::json::material::AlphaMode;
 use gltf::json::validation::Checked;
+use gltf::json::{self, Index};
 use serde_json::{Map, Value};
 use std::collections::HashSet;
 use std::f32::consts::FRAC_1_PI;
 
-/// The material of primitives that name none.
+/// The name of the material of primitives that name none.
 const DEFAULT: &str = "default";
+/// How many sets of texture coordinates a vertex has room for.
+const SETS: usize = 2;
 /// Roughness of a surface whose glossiness lies in a texture of a kind that is not looked up.
 const UNKNOWN_ROUGHNESS: f32 = 0.5;
 /// An index of refraction at which all light is reflected, to the last bit, and whose square is still a number.
@@ -24,24 +26,62 @@ const REFLECTS_ALL: f32 = 1e10;
 /// Least share of light that a medium passes over its attenuation distance: black would absorb without end.
 const LEAST_PASSED: f32 = 1e-6;
 
-/// The materials of a file, the default one last.
-pub fn materials(document: &Document, textures: &mut Textures, report: &mut Report) -> Read<Vec<MaterialDesc>> {
-    let mut names = HashSet::new();
-    let mut materials = Vec::with_capacity(document.root.materials.len() + 1);
-    for (i, material) in document.root.materials.iter().enumerate() {
-        let pointer = format!("/materials/{i}");
-        let mut described = Reader { textures, report, pointer: &pointer }.material(material)?;
-        described.name = unique(material.name.as_deref(), i, &mut names);
-        materials.push(described);
+/// The materials of a file.
+pub struct Materials {
+    /// In the file's order, the default one last.
+    pub descs: Vec<MaterialDesc>,
+    /// Which texture coordinates of the file each looks up as the first and as the second.
+    sets: Vec<Vec<u32>>,
+}
+
+impl Materials {
+    /// Reads those of a file.
+    pub fn read(document: &Document, textures: &mut Textures, report: &mut Report) -> Read<Self> {
+        let mut names = HashSet::new();
+        let count = document.root.materials.len() + 1;
+        let (mut descs, mut sets) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        for (i, material) in document.root.materials.iter().enumerate() {
+            let pointer = format!("/materials/{i}");
+            let mut reader =
+                Reader { textures: &mut *textures, report: &mut *report, pointer: &pointer, sets: Vec::new() };
+            let (name, mut described) = match material {
+                Some(material) => (material.name.as_deref(), reader.material(material)?),
+                None => (None, default()),
+            };
+            sets.push(reader.sets);
+            described.name = unique(name, i, &mut names);
+            descs.push(described);
+        }
+        descs.push(MaterialDesc { name: unique(Some(DEFAULT), descs.len(), &mut names), ..default() });
+        sets.push(Vec::new());
+        Ok(Self { descs, sets })
     }
-    materials.push(MaterialDesc {
-        name: unique(Some(DEFAULT), materials.len(), &mut names),
-        model: model(1.0, 1.0),
-        thin: true,
-        is_stand_in: true,
-        ..MaterialDesc::default_phong()
-    });
-    Ok(materials)
+
+    /// The material of a primitive: the one it names, else the default one.
+    pub fn of(&self, named: Option<Index<json::Material>>, pointer: &str, report: &mut Report) -> usize {
+        let default = self.descs.len() - 1;
+        let named = named.map_or(default, |index| index.value());
+        if named > default {
+            let message = format!("material {named} does not exist; the file has {default}; the default one is shown");
+            report.warn(format!("{pointer}/material"), message);
+        }
+        named.min(default)
+    }
+
+    /// Which texture coordinates of the file a material looks up as the first and as the second, if any.
+    pub fn sets_of(&self, material: usize) -> &[u32] {
+        &self.sets[material]
+    }
+
+    /// How a material looks up a normal map, if it has one.
+    pub fn normal_map_of(&self, material: usize) -> Option<&Lookup<NameRef>> {
+        self.descs[material].relief.normal.as_ref().map(|map| &map.lookup)
+    }
+}
+
+/// The material of primitives that name none.
+fn default() -> MaterialDesc {
+    MaterialDesc { model: model(1.0, 1.0), thin: true, is_stand_in: true, ..MaterialDesc::default_phong() }
 }
 
 /// The file's name of material `i`, unless there is none or another has it.
@@ -56,24 +96,13 @@ fn unique(name: Option<&str>, i: usize, names: &mut HashSet<String>) -> String {
     own
 }
 
-/// What meshes of a material need: whether the second texture coordinates, and how its normal map is looked up.
-pub fn coordinates(material: &MaterialDesc) -> (bool, Option<&Lookup<NameRef>>) {
-    let normal = material.relief.normal.as_ref().map(|map| &map.lookup);
-    let lookups = [
-        material.color.texture.as_ref(),
-        material.emission.texture.as_ref(),
-        material.metallic_roughness.as_ref(),
-        material.transmission.as_ref(),
-        material.occlusion.as_ref().map(|map| &map.lookup),
-    ];
-    (lookups.into_iter().flatten().chain(normal).any(|lookup| lookup.set == 1), normal)
-}
-
 /// Reads one material.
 struct Reader<'a, 'd> {
     textures: &'a mut Textures<'d>,
     report: &'a mut Report,
     pointer: &'a str,
+    /// The sets of texture coordinates looked up so far.
+    sets: Vec<u32>,
 }
 
 impl Reader<'_, '_> {
@@ -166,7 +195,20 @@ impl Reader<'_, '_> {
 
     fn lookup(&mut self, reference: Option<Reference>, key: &str) -> Read<Option<Lookup<NameRef>>> {
         let Some(reference) = reference else { return Ok(None) };
-        self.textures.lookup(reference, &format!("{}/{key}", self.pointer), self.report)
+        let pointer = format!("{}/{key}", self.pointer);
+        let Some(texture) = self.textures.name(reference.index, &pointer, self.report)? else { return Ok(None) };
+        let set = reference.set();
+        let place = self.sets.iter().position(|known| *known == set).unwrap_or_else(|| {
+            self.sets.push(set);
+            self.sets.len() - 1
+        });
+        if place >= SETS {
+            self.sets.truncate(SETS);
+            let message = "the material looks up more than two sets of texture coordinates; this texture is not shown";
+            self.report.warn(pointer, message);
+            return Ok(None);
+        }
+        Ok(Some(Lookup { texture, set: place as u8, transform: reference.upwards() }))
     }
 }
 

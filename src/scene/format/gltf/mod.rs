@@ -5,7 +5,8 @@
 //! | file | what it reads |
 //! |---|---|
 //! | [`container`] | the chunks of a binary file |
-//! | [`root`] | the JSON |
+//! | [`text`] | the text's encoding, and tokens that are not JSON |
+//! | [`root`] | the JSON, entry by entry; [`repair`] and [`schema`] for entries that do not fit their types |
 //! | [`document`] | buffers and buffer views; [`uri`] for where buffers are |
 //! | [`extensions`] | which extensions the file needs |
 //! | [`accessor`] | elements of buffer views |
@@ -14,6 +15,9 @@
 //! | [`mesh`] | primitives; [`topology`], [`tangents`] and [`skin`] for their triangles, normal maps and joints |
 //! | [`material`] | materials; [`texture`] for their textures, images and samplers |
 //! | [`light`], [`camera`] | what stands at nodes besides meshes |
+//!
+//! What is damaged or odd costs the smallest part that holds it, and a warning ([`fault`]): an attribute, a triangle, a
+//! texture. Refused is what is no glTF at all, asks for more than a limit, or needs an extension for its meshes.
 //!
 //! Each primitive of each node is an object, depth first in file order. All is shown at rest: animations are not played,
 //! skins are held by their joints as the nodes place them, and morph targets weigh what the file says.
@@ -30,17 +34,21 @@ mod material;
 mod mesh;
 mod nodes;
 mod objects;
+mod repair;
 mod root;
+mod schema;
 mod skin;
 mod tangents;
+mod text;
 mod texture;
 mod topology;
 mod uri;
 
 use super::Input;
-use super::json::parse_as;
+use super::json::outermost;
 use crate::scene::build::SceneBuilder;
 use crate::scene::desc::SceneDesc;
+use crate::scene::desc::map::shortened;
 use crate::scene::error::SceneError;
 use crate::scene::limits::Limits;
 use crate::scene::material::Alpha;
@@ -48,7 +56,8 @@ use crate::scene::{Progress, RenderDefaults};
 use crate::settings::{Exposure, ToneMap};
 use container::Container;
 use document::Document;
-use fault::{Fault, Read, Report};
+use fault::{Fault, Notes, Read, Report};
+use material::Materials;
 use nodes::Nodes;
 use root::Root;
 use texture::Textures;
@@ -60,12 +69,30 @@ const DEPTH_WITH_BLENDING: u32 = 12;
 pub fn read(input: &Input, builder: &mut SceneBuilder) -> Result<(), SceneError> {
     let in_file = |fault: Fault| fault.in_file(input.path);
     let Container { json, bin } = container::open(input.bytes).map_err(in_file)?;
-    let root: Root = parse_as("glTF", input.path, json, builder.limits().nesting)?;
+    let mut notes = Notes::default();
+    let text = text::read(json, &mut notes);
+    let nesting = builder.limits().nesting;
+    let root = outermost(input.path, &text, nesting).and_then(|json| root::read(json, &mut notes).map_err(in_file));
+    let root = match root {
+        // With other words for what is not JSON, if it is that.
+        Err(error) => match tamed(&text) {
+            Some(text) => {
+                let json = outermost(input.path, text.as_bytes(), nesting).map_err(|_| error)?;
+                notes.add("", "numbers or characters that are not JSON; they are left out");
+                root::read(json, &mut notes).map_err(in_file)?
+            }
+            None => return Err(error),
+        },
+        Ok(root) => root,
+    };
+    drop(text);
+    check_version(&root, &mut notes).and_then(|()| extensions::check(&root, &mut notes)).map_err(in_file)?;
+    let (limits, progress) = (builder.limits().clone(), builder.progress().clone());
+    let document = Document::new(root, bin, &limits, &mut notes, |name| builder.read_file(name));
     let mut report = Report::default();
-    check_version(&root).and_then(|()| extensions::check(&root, &mut report)).map_err(in_file)?;
-    let limits = builder.limits().clone();
-    let document = Document::new(root, bin, &limits, |name| builder.read_file(name));
-    let scene = describe(&document, &limits, builder.progress(), &mut report).map_err(in_file)?;
+    report.take(notes);
+    let mut has_file = |name: &str| builder.has_file(name);
+    let scene = describe(&document, &limits, &progress, &mut has_file, &mut report).map_err(in_file)?;
     drop(document);
     let mut warnings = std::mem::take(&mut report.warnings);
     builder.add(scene, &mut warnings).map_err(|problem| in_file(report.fault(problem)))?;
@@ -74,24 +101,41 @@ pub fn read(input: &Input, builder: &mut SceneBuilder) -> Result<(), SceneError>
     Ok(())
 }
 
-fn check_version(root: &Root) -> Read<()> {
+/// The text with other words for what is not JSON, if it has such.
+fn tamed(text: &[u8]) -> Option<String> {
+    text::tamed(std::str::from_utf8(text).ok()?)
+}
+
+fn check_version(root: &Root, notes: &mut Notes) -> Read<()> {
     let fault = |key: &str, version: &str| {
-        Err(Fault::new(format!("/asset/{key}"), format!("glTF version {version} is not known; expected 2.0")))
+        let message = format!("glTF version {} is not known; expected 2.0", shortened(version));
+        Err(Fault::fatal(format!("/asset/{key}"), message))
     };
-    match (&root.asset.version, &root.asset.min_version) {
-        (_, Some(least)) if least != "2.0" => fault("minVersion", least),
-        (version, _) if !version.starts_with("2.") => fault("version", version),
+    let asset = root.asset.as_ref();
+    match (asset.and_then(|asset| asset.version.as_deref()), asset.and_then(|asset| asset.min_version.as_deref())) {
+        (_, Some(least)) if !matches!(least, "2" | "2.0") => fault("minVersion", least),
+        (Some(version), _) if version != "2" && !version.starts_with("2.") => fault("version", version),
+        (None, _) => {
+            notes.add("/asset/version", "the file has no version; it is read as glTF 2.0");
+            Ok(())
+        }
         _ => Ok(()),
     }
 }
 
 /// The description of the default scene.
-fn describe(document: &Document, limits: &Limits, progress: &Progress, report: &mut Report) -> Read<SceneDesc> {
+fn describe(
+    document: &Document,
+    limits: &Limits,
+    progress: &Progress,
+    has_file: &mut dyn FnMut(&str) -> bool,
+    report: &mut Report,
+) -> Read<SceneDesc> {
     let nodes = Nodes::walk(document, limits, report)?;
-    let mut textures = Textures::new(document);
-    let materials = material::materials(document, &mut textures, report)?;
+    let mut textures = Textures::new(document, has_file);
+    let materials = Materials::read(document, &mut textures, report)?;
     let objects = objects::objects(document, &nodes, &materials, limits, progress, report)?;
-    let see_through = materials.iter().any(|m| m.alpha == Alpha::Blend || m.is_transparent());
+    let see_through = materials.descs.iter().any(|m| m.alpha == Alpha::Blend || m.is_transparent());
     let render = RenderDefaults::default();
     Ok(SceneDesc {
         render: RenderDefaults {
@@ -103,7 +147,7 @@ fn describe(document: &Document, limits: &Limits, progress: &Progress, report: &
         },
         cameras: camera::cameras(document, &nodes, || objects::bounds(&objects), report)?,
         textures: textures.descs,
-        materials,
+        materials: materials.descs,
         lights: light::lights(document, &nodes, report)?,
         objects,
     })

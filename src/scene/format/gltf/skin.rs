@@ -2,7 +2,8 @@
 
 use super::accessor::{Accessor, Which};
 use super::document::{Document, get};
-use super::fault::Read;
+use super::fault::{Notes, Read};
+use super::mesh::LOST;
 use super::nodes::Nodes;
 use crate::scene::desc::MeshDesc;
 use glam::{DAffine3, DVec3};
@@ -20,8 +21,9 @@ pub fn hold(
     holder: Holder,
     nodes: &Nodes,
     mesh: &mut MeshDesc,
+    notes: &mut Notes,
 ) -> Read<()> {
-    let joints = joint_matrices(document, nodes, holder)?;
+    let joints = joint_matrices(document, nodes, holder, notes)?;
     let mut sums = vec![DAffine3::ZERO; mesh.vertices.len()];
     let mut totals = vec![0.0; mesh.vertices.len()];
     for set in 0.. {
@@ -30,14 +32,18 @@ pub fn hold(
         else {
             break;
         };
-        let open =
-            |index, name: &str| Accessor::open(document, index, format_args!("{pointer}/attributes/{name}_{set}"));
-        let held_by = open(held_by, "JOINTS")?.integers::<4>(which)?;
-        let weights = open(weights, "WEIGHTS")?.shares::<4>(which)?;
+        let mut open = |index, name: &str| {
+            Accessor::open(document, index, format_args!("{pointer}/attributes/{name}_{set}"), notes)
+        };
+        let held_by = open(held_by, "JOINTS").and_then(|held_by| held_by.integers::<4>(which));
+        let weights = open(weights, "WEIGHTS").and_then(|weights| weights.shares::<4>(which));
+        let (Some(held_by), Some(weights)) = (notes.attempt(held_by, LOST)?, notes.attempt(weights, LOST)?) else {
+            continue;
+        };
         for (((held_by, weights), sum), total) in held_by.iter().zip(&weights).zip(&mut sums).zip(&mut totals) {
             for (&joint, &weight) in held_by.iter().zip(weights) {
                 let weight = f64::from(weight);
-                if let Some(joint) = joints.get(joint as usize).filter(|_| weight > 0.0) {
+                if let Some(joint) = joints.get(joint as usize).filter(|_| weight > 0.0 && weight.is_finite()) {
                     sum.matrix3 += joint.matrix3 * weight;
                     sum.translation += joint.translation * weight;
                     *total += weight;
@@ -72,26 +78,39 @@ pub struct Holder {
 
 /// Where each joint of a skin takes the mesh at rest: from the mesh's own space to the world. The place of the mesh's own
 /// node does not count.
-fn joint_matrices(document: &Document, nodes: &Nodes, Holder { skin, node }: Holder) -> Read<Vec<DAffine3>> {
+fn joint_matrices(
+    document: &Document,
+    nodes: &Nodes,
+    Holder { skin, node }: Holder,
+    notes: &mut Notes,
+) -> Read<Vec<DAffine3>> {
     let i = skin.value();
     let skin = get(&document.root.skins, skin, "skin", format_args!("/nodes/{node}/skin"))?;
     document.take_elements(skin.joints.len() as u64, format_args!("/skins/{i}/joints"))?;
     let mut binds = Vec::new();
     if let Some(index) = skin.inverse_bind_matrices {
-        let accessor = Accessor::open(document, index, format_args!("/skins/{i}/inverseBindMatrices"))?;
-        binds = accessor.vectors::<16>(Which::All)?;
+        let accessor = Accessor::open(document, index, format_args!("/skins/{i}/inverseBindMatrices"), notes);
+        let matrices = accessor.and_then(|accessor| accessor.vectors::<16>(Which::All));
+        binds = notes.attempt(matrices, "matrices of skins left out")?.unwrap_or_default();
     }
     let joint = |(place, &joint): (usize, &Index<Node>)| {
-        get(&document.root.nodes, joint, "node", format_args!("/skins/{i}/joints/{place}"))?;
-        // A joint outside of the scene has no place in the world: it leaves the mesh as it was bound.
-        let Some(world) = nodes.worlds[joint.value()] else { return Ok(DAffine3::IDENTITY) };
-        Ok(match binds.get(place) {
+        // A joint that is not in the scene has no place in the world: it leaves the mesh as it was bound.
+        let Some(world) = nodes.worlds.get(joint.value()).copied().flatten() else { return DAffine3::IDENTITY };
+        match binds.get(place).filter(|m| m.iter().all(|v| v.is_finite())) {
             None => world,
             Some(m) => {
                 let column = |at: usize| DVec3::new(m[at].into(), m[at + 1].into(), m[at + 2].into());
                 world * DAffine3::from_cols(column(0), column(4), column(8), column(12))
             }
-        })
+        }
     };
-    skin.joints.iter().enumerate().map(joint).collect()
+    let missing = |joint: &Index<Node>| joint.value() >= nodes.worlds.len();
+    if skin.joints.iter().any(missing) {
+        notes.add(format!("/skins/{i}/joints"), "joints that are not there; what they hold stays as it was bound");
+    }
+    if binds.iter().flatten().any(|v| !v.is_finite()) {
+        let message = "matrices that are not finite; they are left out";
+        notes.add(format!("/skins/{i}/inverseBindMatrices"), message);
+    }
+    Ok(skin.joints.iter().enumerate().map(joint).collect())
 }

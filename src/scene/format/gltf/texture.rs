@@ -1,10 +1,9 @@
 //! Textures, their images and samplers, and how materials look them up.
 
 use super::document::{Document, get};
-use super::fault::{Fault, Read, Report};
+use super::fault::{Fault, Notes, Read, Report};
 use super::uri::{self, Target};
 use crate::scene::desc::{ImageDesc, ImageSource, NameRef, TextureDesc, TextureKind};
-use crate::scene::material::Lookup;
 use crate::scene::texture::{Blending, Sampler, Wrap};
 use glam::{Affine2, Mat2, Vec2};
 use gltf::json::extensions::texture::TextureTransform;
@@ -16,6 +15,8 @@ use std::sync::Arc;
 
 /// The extension by which a texture names an image in WebP.
 const WEBP: &str = "EXT_texture_webp";
+/// What textures are called that cannot be shown.
+const LOST: &str = "textures left out";
 
 /// The textures that materials use, described once each.
 pub struct Textures<'d> {
@@ -29,6 +30,8 @@ pub struct Textures<'d> {
     /// Bytes of images within buffers, by buffer view, and how many more there may be: no more than the buffers have.
     embedded: HashMap<usize, Arc<[u8]>>,
     bytes_left: usize,
+    /// Whether there is a file of a name.
+    has_file: &'d mut dyn FnMut(&str) -> bool,
 }
 
 /// How a material refers to a texture, whatever the property.
@@ -48,11 +51,21 @@ impl<'a> Reference<'a> {
         let transform = info.extensions.as_ref().and_then(|extensions| extensions.texture_transform.as_ref());
         Self { index: info.index, set: info.tex_coord, transform }
     }
+
+    /// Which texture coordinates, the transform's own choice counted.
+    pub fn set(&self) -> u32 {
+        self.transform.and_then(|transform| transform.tex_coord).unwrap_or(self.set)
+    }
+
+    /// What coordinates with v upwards go through first.
+    pub fn upwards(&self) -> Affine2 {
+        self.transform.map_or(Affine2::IDENTITY, upwards)
+    }
 }
 
 impl<'d> Textures<'d> {
     /// None yet.
-    pub fn new(document: &'d Document<'d>) -> Self {
+    pub fn new(document: &'d Document<'d>, has_file: &'d mut dyn FnMut(&str) -> bool) -> Self {
         Self {
             document,
             descs: Vec::new(),
@@ -60,39 +73,23 @@ impl<'d> Textures<'d> {
             images: HashMap::new(),
             embedded: HashMap::new(),
             bytes_left: document.buffer_bytes(),
+            has_file,
         }
     }
 
-    /// How a texture is looked up; `None` where there is nothing to show, which was told. `pointer` is where the material
-    /// refers to it.
-    pub fn lookup(
-        &mut self,
-        reference: Reference,
-        pointer: &str,
-        report: &mut Report,
-    ) -> Read<Option<Lookup<NameRef>>> {
-        let Some(texture) = self.name(reference.index, pointer, report)? else { return Ok(None) };
-        let transform = reference.transform;
-        let set = transform.and_then(|transform| transform.tex_coord).unwrap_or(reference.set);
-        if set > 1 {
-            report.warn(pointer, format!("texture coordinates {set} are not read; the first are used"));
-        }
-        let set = u8::from(set == 1);
-        Ok(Some(Lookup { texture, set, transform: transform.map_or(Affine2::IDENTITY, upwards) }))
-    }
-
-    fn name(&mut self, index: Index<json::Texture>, pointer: &str, report: &mut Report) -> Read<Option<NameRef>> {
+    /// The name of a texture; `None` where there is nothing to show, which was told. `pointer` is where the material refers
+    /// to it.
+    pub fn name(&mut self, index: Index<json::Texture>, pointer: &str, report: &mut Report) -> Read<Option<NameRef>> {
         let i = index.value();
         if let Some(known) = self.names.get(&i) {
             return Ok(known.clone());
         }
-        let texture = get(&self.document.root.textures, index, "texture", format_args!("{pointer}/index"))?;
-        let sampler = match texture.sampler {
-            None => Sampler::default(),
-            Some(index) => {
-                sampler(get(&self.document.root.samplers, index, "sampler", format_args!("/textures/{i}/sampler"))?)
-            }
-        };
+        let texture = get(&self.document.root.textures, index, "texture", format_args!("{pointer}/index"));
+        let Some(texture) = report.attempt(texture, LOST)? else { return Ok(None) };
+        let named = texture.sampler.map(|index| {
+            get(&self.document.root.samplers, index, "sampler", format_args!("/textures/{i}/sampler")).map(sampler)
+        });
+        let sampler = report.attempt(named.transpose(), "samplers left out")?.flatten().unwrap_or_default();
         let source = self.source(texture, i, report)?;
         let name = source.map(|source| {
             let name = NameRef { name: format!("texture {i}"), at: report.at(format!("/textures/{i}")) };
@@ -116,7 +113,8 @@ impl<'d> Textures<'d> {
             report.warn(format!("/textures/{i}"), "the texture has no image of a known kind; it is not shown");
             return Ok(None);
         };
-        let image = get(&self.document.root.images, index, "image", format_args!("/textures/{i}/source"))?;
+        let image = get(&self.document.root.images, index, "image", format_args!("/textures/{i}/source"));
+        let Some(image) = report.attempt(image, LOST)? else { return Ok(None) };
         let number = index.value();
         if let Some(known) = self.images.get(&number) {
             return Ok(known.clone());
@@ -138,8 +136,10 @@ impl<'d> Textures<'d> {
             ImageSource::Embedded { bytes, name: NameRef { name, at: report.at(&*pointer) } }
         };
         if let Some(view) = image.buffer_view {
-            let bytes = self.bytes_of(view, i)?;
-            return Ok(Some(embedded(bytes, report)));
+            let mut notes = Notes::default();
+            let bytes = self.bytes_of(view, i, &mut notes);
+            report.take(notes);
+            return Ok(report.attempt(bytes, LOST)?.map(|bytes| embedded(bytes, report)));
         }
         let Some(uri) = &image.uri else {
             report.warn(pointer, "the image has neither uri nor bufferView; it is not shown");
@@ -147,24 +147,22 @@ impl<'d> Textures<'d> {
         };
         Ok(match uri::read(uri) {
             Ok(Target::Bytes(bytes)) => Some(embedded(bytes.into(), report)),
-            Ok(Target::File(name)) => {
-                Some(ImageSource::File(NameRef { name: name.into_owned(), at: report.at(pointer) }))
+            Ok(Target::File(mut names)) => {
+                let found = names.iter().position(|name| (self.has_file)(name)).unwrap_or(0);
+                Some(ImageSource::File(NameRef { name: names.swap_remove(found), at: report.at(pointer) }))
             }
-            Err(message) => {
-                report.warn(pointer, format!("{message}; the image is not shown"));
-                None
-            }
+            Err(message) => report.attempt(Err(Fault::new(pointer, message)), LOST)?,
         })
     }
 }
 
 impl Textures<'_> {
     /// The bytes of image `i` in a buffer view.
-    fn bytes_of(&mut self, view: Index<json::buffer::View>, i: usize) -> Read<Arc<[u8]>> {
+    fn bytes_of(&mut self, view: Index<json::buffer::View>, i: usize, notes: &mut Notes) -> Read<Arc<[u8]>> {
         if let Some(bytes) = self.embedded.get(&view.value()) {
             return Ok(Arc::clone(bytes));
         }
-        let (bytes, _) = self.document.view(view, format_args!("/images/{i}/bufferView"))?;
+        let bytes = self.document.view(view, format_args!("/images/{i}/bufferView"), notes)?.bytes;
         self.bytes_left = self.bytes_left.checked_sub(bytes.len()).ok_or_else(|| {
             Fault::new(
                 format!("/images/{i}/bufferView"),

@@ -7,9 +7,9 @@ use std::borrow::Cow;
 
 /// Where a URI leads.
 #[derive(Debug, PartialEq)]
-pub enum Target<'a> {
-    /// To a file, relative to the scene's folder.
-    File(Cow<'a, str>),
+pub enum Target {
+    /// To a file, relative to the scene's folder: names that the URI may stand for, the likeliest first, at least one.
+    File(Vec<String>),
     /// To these bytes.
     Bytes(Vec<u8>),
 }
@@ -21,16 +21,27 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 );
 
 /// Reads a URI; the error says what is wrong with it.
-pub fn read(uri: &str) -> Result<Target<'_>, String> {
+pub fn read(uri: &str) -> Result<Target, String> {
+    let uri = uri.trim();
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
         return data(&uri[5..]).map(Target::Bytes);
     }
-    // A single letter before the colon is a drive, which the scene's files refuse as an absolute path.
-    let scheme = uri.split_once(':').map(|(scheme, _)| scheme);
+    // A single letter before the colon is a drive; of paths on other machines what lies beside the scene is found.
+    let scheme = uri.split_once(':').map(|(scheme, _)| scheme).filter(|scheme| !scheme.eq_ignore_ascii_case("file"));
     if let Some(scheme) = scheme.filter(|s| s.len() > 1 && s.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'+')) {
         return Err(format!("{scheme}: addresses are not followed; put the file into the scene's folder"));
     }
-    percent_decoded(uri).map(Target::File)
+    // As a URI; as the plain name that it should not be; without what is no part of a file's name.
+    let path = uri.split(['?', '#']).next().unwrap_or_default();
+    let mut names = Vec::new();
+    for name in [percent_decoded(uri), Some(Cow::Borrowed(uri)), percent_decoded(path), Some(Cow::Borrowed(path))] {
+        if let Some(name) = name.filter(|name| !name.is_empty())
+            && !names.iter().any(|known| *known == name)
+        {
+            names.push(name.into_owned());
+        }
+    }
+    if names.is_empty() { Err("the URI is empty".to_owned()) } else { Ok(Target::File(names)) }
 }
 
 /// The bytes of a data URI, without its `data:`.
@@ -38,20 +49,27 @@ fn data(rest: &str) -> Result<Vec<u8>, String> {
     let Some((kind, contents)) = rest.split_once(',') else {
         return Err("the data URI has no comma before its data".to_owned());
     };
-    if kind.to_ascii_lowercase().ends_with(";base64") {
-        let contents = percent_decoded(contents)?;
-        return BASE64.decode(contents.as_bytes()).map_err(|error| format!("the data URI is not base64: {error}"));
+    if !kind.split(';').skip(1).any(|part| part.trim().eq_ignore_ascii_case("base64")) {
+        return Ok(percent_bytes(contents).into_owned());
     }
-    Ok(percent_bytes(contents).into_owned())
+    let mut encoded = percent_bytes(contents);
+    // Lines are broken, and there is an alphabet for names of files.
+    if encoded.iter().any(|byte| byte.is_ascii_whitespace() || matches!(byte, b'-' | b'_')) {
+        let plain = |byte: &u8| match byte {
+            b'-' => b'+',
+            b'_' => b'/',
+            other => *other,
+        };
+        encoded = encoded.iter().filter(|byte| !byte.is_ascii_whitespace()).map(plain).collect();
+    }
+    BASE64.decode(&encoded).map_err(|error| format!("the data URI is not base64: {error}"))
 }
 
-fn percent_decoded(text: &str) -> Result<Cow<'_, str>, String> {
+/// The text that percent codes stand for; `None` where it is not UTF-8.
+fn percent_decoded(text: &str) -> Option<Cow<'_, str>> {
     match percent_bytes(text) {
-        Cow::Borrowed(_) => Ok(Cow::Borrowed(text)),
-        Cow::Owned(bytes) => match String::from_utf8(bytes) {
-            Ok(text) => Ok(Cow::Owned(text)),
-            Err(_) => Err("the URI's percent codes are not UTF-8".to_owned()),
-        },
+        Cow::Borrowed(_) => Some(Cow::Borrowed(text)),
+        Cow::Owned(bytes) => String::from_utf8(bytes).ok().map(Cow::Owned),
     }
 }
 
@@ -78,22 +96,33 @@ mod tests {
 
     #[test]
     fn names_are_decoded_and_odd_ones_do_no_harm() {
-        let file = |uri| match read(uri) {
-            Ok(Target::File(name)) => name.into_owned(),
+        let names = |uri| match read(uri) {
+            Ok(Target::File(names)) => names,
             other => panic!("{uri}: {other:?}"),
         };
-        assert_eq!(file("a%20b.png"), "a b.png");
-        assert_eq!(file("100%.png"), "100%.png");
-        assert_eq!(file("%2e%2e%2fx"), "../x");
-        assert_eq!(file("%+1%é%"), "%+1%é%");
-        for odd in ["%FF", "http://a/b.bin", "file:///etc/passwd"] {
+        assert_eq!(names("a%20b.png"), ["a b.png", "a%20b.png"]);
+        assert_eq!(names("100%.png"), ["100%.png"]);
+        assert_eq!(names("%2e%2e%2fx"), ["../x", "%2e%2e%2fx"]);
+        assert_eq!(names("%+1%é%"), ["%+1%é%"]);
+        assert_eq!(names("%FF"), ["%FF"]);
+        assert_eq!(names("a%20b.png?v=3#4"), ["a b.png?v=3#4", "a%20b.png?v=3#4", "a b.png", "a%20b.png"]);
+        assert_eq!(names(" a#b.png\n"), ["a#b.png", "a"]);
+        assert_eq!(names(r"C:\a.png"), [r"C:\a.png"]);
+        assert_eq!(names("file:///C:/a.png"), ["file:///C:/a.png"]);
+        for odd in ["http://a/b.bin", "", " "] {
             assert!(read(odd).is_err(), "{odd}");
         }
     }
 
     #[test]
     fn data_is_decoded_with_and_without_padding() {
-        for uri in ["data:application/octet-stream;base64,AAEC/w==", "DATA:;base64,AAEC/w", "data:,%00%01%02%FF"] {
+        for uri in [
+            "data:application/octet-stream;base64,AAEC/w==",
+            "DATA:;base64,AAEC/w",
+            "data:,%00%01%02%FF",
+            "data:image/png;charset=utf-8;BASE64, AAE\n C_w==\r\n",
+            "data:image/png;base64;charset=utf-8,AAEC%2Fw%3D%3D",
+        ] {
             assert_eq!(read(uri), Ok(Target::Bytes(vec![0, 1, 2, 255])), "{uri}");
         }
         for wrong in ["data:", "data:;base64", "data:;base64,A*", "data:;base64,A"] {
