@@ -10,6 +10,7 @@ mod corpus;
 mod crowds;
 mod determinism;
 mod exactness;
+mod far_coordinates;
 mod flat_mirrors;
 #[path = "../common/flips.rs"]
 mod flips;
@@ -18,6 +19,7 @@ mod gltf;
 mod imports;
 mod instancing;
 mod interpolation;
+mod lettering;
 mod maps;
 mod our_scenes;
 mod overlay;

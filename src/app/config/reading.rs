@@ -129,7 +129,8 @@ fn read_window(map: Option<Map<String, Value>>, faults: &mut Faults) -> Option<W
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Camera;
+    use crate::scene::{Camera, FileCamera};
+    use glam::DVec3;
     use std::path::Path;
 
     fn read(text: &str) -> (Config, Option<String>) {
@@ -140,7 +141,8 @@ mod tests {
 
     #[test]
     fn one_bad_entry_costs_nothing_but_itself() {
-        let camera = Camera::default().to_json();
+        let usual = FileCamera::of(&Camera::default(), DVec3::ZERO);
+        let camera = usual.to_json();
         let text = format!(
             r#"{{ "ui_scale": 2, "panel": 7, "settings": {{ "stride": "4", "fill": 3 }},
             "window": {{ "position": [1, "x"], "size": [900, 500], "maximized": true }},
@@ -155,9 +157,9 @@ mod tests {
         assert_eq!(config.window, Some(window));
         assert_eq!(config.recent.files(), [Path::new("/a.json")]);
         assert!(config.others.contains_key("later"));
-        assert_eq!(config.bookmarks.of(Some(Path::new("/short.json"))).get(1), Some(Camera::default()));
+        assert_eq!(config.bookmarks.of(Some(Path::new("/short.json"))).get(1), Some(usual));
         let odd = config.bookmarks.of(Some(Path::new("/odd.json")));
-        assert_eq!((odd.get(1), odd.get(2), odd.get(3)), (None, Some(Camera::default()), None));
+        assert_eq!((odd.get(1), odd.get(2), odd.get(3)), (None, Some(usual), None));
         let faults = faults.expect("there are some");
         assert!(faults.contains("panel") && faults.ends_with("more") && !faults.contains('\n'), "{faults}");
     }

@@ -45,6 +45,12 @@ impl Warnings {
         }
     }
 
+    /// Adds those of another list.
+    pub fn append(&mut self, other: Self) {
+        other.kept.into_iter().for_each(|problem| self.push(problem.at, problem.message));
+        self.dropped += other.dropped;
+    }
+
     /// Those kept, the last one telling how many more there were.
     pub fn into_problems(mut self) -> Vec<Problem> {
         if self.dropped > 0 {

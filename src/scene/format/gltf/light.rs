@@ -5,13 +5,13 @@ use super::fault::{Fault, Read, Report};
 use super::nodes::Nodes;
 use crate::scene::Light;
 use crate::scene::light::{Falloff, LightKind};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use gltf::json::extensions::scene::khr_lights_punctual::{Light as Punctual, Type};
 use gltf::json::validation::Checked;
 use std::f32::consts::FRAC_PI_2;
 
 /// The lights of the scene, in the order of its nodes. Their `range` is left out: the square of the distance is enough.
-pub fn lights(document: &Document, nodes: &Nodes, report: &mut Report) -> Read<Vec<Light>> {
+pub fn lights(document: &Document, nodes: &Nodes, report: &mut Report) -> Read<Vec<Light<DVec3>>> {
     let extension = document.root.extensions.khr_lights_punctual.as_ref();
     let all: &[Punctual] = extension.map_or(&[], |extension| &extension.lights);
     let mut lights = Vec::new();
@@ -22,9 +22,9 @@ pub fn lights(document: &Document, nodes: &Nodes, report: &mut Report) -> Read<V
         let by = format_args!("/nodes/{node}/extensions/KHR_lights_punctual/light");
         let light = get(all, named.light, "light", by)?;
         let pointer = format!("/extensions/KHR_lights_punctual/lights/{}", named.light.value());
-        let position = world.translation.as_vec3();
+        let position = world.translation;
         let direction = (-world.matrix3.z_axis).normalize_or_zero().as_vec3();
-        if !position.is_finite() || (direction == Vec3::ZERO && light.type_ != Checked::Valid(Type::Point)) {
+        if !position.as_vec3().is_finite() || (direction == Vec3::ZERO && light.type_ != Checked::Valid(Type::Point)) {
             report.warn(format!("/nodes/{node}"), "the node of a light flattens it; the light is left out");
             continue;
         }
