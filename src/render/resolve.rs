@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn every_colour_is_shown_as_the_light_that_undoes_the_curve() {
-        let undone = |color| dispatch!(SimdToken::best(), simd => undo_neutral(simd, V3::splat(simd, Vec3::from(color))).lane(0));
+        let undone = |color| dispatch!(SimdToken::best(), simd => undo_neutral(simd, V3::splat(simd, glam::Vec3::from(color))).lane(0));
         for r in (0..=255).step_by(15) {
             for g in (0..=255).step_by(15) {
                 for b in (0..=255).step_by(15) {

@@ -80,6 +80,13 @@ impl FileCamera {
     }
 }
 
+/// A camera of a scene that was not moved.
+impl From<Camera> for FileCamera {
+    fn from(camera: Camera) -> Self {
+        Self::of(&camera, DVec3::ZERO)
+    }
+}
+
 /// A point of a scene that was moved so that `origin` is at its origin, in the coordinates of its file.
 pub fn in_file(point: Vec3, origin: DVec3) -> DVec3 {
     DVec3::from(point.to_array().map(shortest)) + origin

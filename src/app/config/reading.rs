@@ -130,7 +130,6 @@ fn read_window(map: Option<Map<String, Value>>, faults: &mut Faults) -> Option<W
 mod tests {
     use super::*;
     use crate::scene::{Camera, FileCamera};
-    use glam::DVec3;
     use std::path::Path;
 
     fn read(text: &str) -> (Config, Option<String>) {
@@ -141,7 +140,7 @@ mod tests {
 
     #[test]
     fn one_bad_entry_costs_nothing_but_itself() {
-        let usual = FileCamera::of(&Camera::default(), DVec3::ZERO);
+        let usual = FileCamera::from(Camera::default());
         let camera = usual.to_json();
         let text = format!(
             r#"{{ "ui_scale": 2, "panel": 7, "settings": {{ "stride": "4", "fill": 3 }},
@@ -190,7 +189,7 @@ mod tests {
         let mut config = Config { ui_scale: 1.5, sensitivity: Some(0.2), ..Config::default() };
         config.recent.opened(Path::new("/scenes/my room.json"));
         let far = Camera { eye: glam::Vec3::new(0.1, 1.6, -1e-7), ..Camera::default() };
-        config.bookmarks.of_mut(Some(Path::new("/a.json"))).store(3, far);
+        config.bookmarks.of_mut(Some(Path::new("/a.json"))).store(3, far.into());
         for config in [config, Config::default()] {
             let text = serde_json::to_string_pretty(&config).expect("plain data");
             assert_eq!(read(&text), (config, None));
