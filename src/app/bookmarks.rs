@@ -1,7 +1,7 @@
 //! Numbered views to come back to.
 
 use super::config::reading::Faults;
-use crate::scene::Camera;
+use crate::scene::FileCamera;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -58,18 +58,18 @@ fn name(place: Option<&Path>) -> String {
 
 /// Views by number, 1 to 9.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Bookmarks([Option<Camera>; 9]);
+pub struct Bookmarks([Option<FileCamera>; 9]);
 
 impl Bookmarks {
     /// Keeps a view under a number from 1 to 9; others are no numbers of bookmarks.
-    pub fn store(&mut self, number: u8, camera: Camera) {
+    pub fn store(&mut self, number: u8, camera: FileCamera) {
         if let Some(place) = self.0.get_mut(usize::from(number.wrapping_sub(1))) {
             *place = Some(camera);
         }
     }
 
     /// The view of a number, if one was kept.
-    pub fn get(&self, number: u8) -> Option<Camera> {
+    pub fn get(&self, number: u8) -> Option<FileCamera> {
         *self.0.get(usize::from(number.wrapping_sub(1)))?
     }
 
@@ -85,9 +85,9 @@ impl Bookmarks {
         }
         let places = bookmarks.0.iter_mut().zip(views).enumerate();
         for (i, (place, view)) in places.filter(|(_, (_, view))| !view.is_null()) {
-            match serde_json::from_value(view) {
-                Ok(view) => *place = Some(view),
-                Err(_) => faults.note(format_args!("bookmark {} of \"{name}\"", i + 1)),
+            match serde_json::from_value(view).ok().filter(FileCamera::is_valid) {
+                Some(view) => *place = Some(view),
+                None => faults.note(format_args!("bookmark {} of \"{name}\"", i + 1)),
             }
         }
         bookmarks
@@ -105,13 +105,18 @@ impl Bookmarks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
+    use crate::scene::Camera;
+    use glam::{DVec3, Vec3};
+
+    fn usual() -> FileCamera {
+        FileCamera::of(&Camera::default(), DVec3::ZERO)
+    }
 
     #[test]
     fn each_scene_has_its_own() {
         let mut shelf = BookmarkShelf::default();
-        shelf.of_mut(Some(Path::new("/room.json"))).store(1, Camera::default());
-        assert_eq!(shelf.of(Some(Path::new("/room.json"))).get(1), Some(Camera::default()));
+        shelf.of_mut(Some(Path::new("/room.json"))).store(1, usual());
+        assert_eq!(shelf.of(Some(Path::new("/room.json"))).get(1), Some(usual()));
         assert_eq!(shelf.of(Some(Path::new("/hall.json"))).get(1), None);
         assert_eq!(shelf.of(None).get(1), None);
         let text = serde_json::to_string(&shelf).expect("plain data");
@@ -121,7 +126,8 @@ mod tests {
 
     #[test]
     fn a_view_is_kept_bit_for_bit_also_in_a_file() {
-        let camera = Camera::from_yaw_pitch(Vec3::new(0.1, 1.6, -1e-7), 33.3, -7.1, 61.7);
+        let exact = Camera::from_yaw_pitch(Vec3::new(0.1, 1.6, -1e-7), 33.3, -7.1, 61.7);
+        let camera = FileCamera::of(&exact, DVec3::ZERO);
         let mut bookmarks = Bookmarks::default();
         bookmarks.store(3, camera);
         bookmarks.store(0, camera);
@@ -129,7 +135,7 @@ mod tests {
         let text = serde_json::to_string(&bookmarks).expect("plain data");
         let read = Bookmarks::read("", serde_json::from_str(&text).expect("what was written"), &mut Faults::default());
         assert_eq!(read, bookmarks);
-        assert_eq!(read.get(3), Some(camera));
+        assert_eq!(read.get(3).and_then(|camera| camera.camera(DVec3::ZERO)), Some(exact));
         assert!([0, 1, 9, 10, 255].iter().all(|&number| read.get(number).is_none()));
     }
 }

@@ -30,8 +30,10 @@ pub fn inspect(scene: &Scene, camera: &Camera, size: (u32, u32), place: DVec2) -
     let pick = scene.pick(camera.eye, direction, camera.near).filter(|pick| pick.distance <= camera.far)?;
     let object = scene.objects.get(pick.id.object as usize)?;
     let material = scene.materials.get(object.material as usize)?;
+    let point = camera.eye + direction * pick.distance;
     let mut facts = vec![
         ("kind", format!("{}, object {} of {}", object.kind, pick.id.object + 1, scene.objects.len())),
+        ("point", scene.in_file(point).to_array().map(rounded).join(" ")),
         ("size", if object.bounds.is_finite() { vector(object.bounds.size()) } else { "endless".to_owned() }),
     ];
     facts.extend(part(scene, pick.id, object.kind));
@@ -39,7 +41,7 @@ pub fn inspect(scene: &Scene, camera: &Camera, size: (u32, u32), place: DVec2) -
     Some(Inspection {
         title: object.name.clone().unwrap_or_else(|| format!("a {} without a name", object.kind)),
         facts,
-        point: camera.eye + direction * pick.distance,
+        point,
         bounds: object.bounds,
     })
 }
@@ -113,11 +115,12 @@ fn vector(v: Vec3) -> String {
 }
 
 /// Three decimals at most, or three figures of what is small.
-fn rounded(value: f32) -> String {
+fn rounded(value: impl Into<f64>) -> String {
+    let value = value.into();
     if value != 0.0 && value.abs() < 0.01 {
         return format!("{value:.2e}");
     }
-    ((f64::from(value) * 1e3).round() / 1e3).to_string()
+    ((value * 1e3).round() / 1e3).to_string()
 }
 
 impl Inspection {
@@ -187,6 +190,13 @@ mod tests {
         load_text("room.json", ROOM, &LoadOptions::default()).expect("right")
     }
 
+    /// A ball far from the origin of its file.
+    fn far() -> Scene {
+        let text = r#"{ "version": 1, "camera": { "position": [582143, 0, 5340127], "look_at": [582143, 0, 5340122] },
+            "objects": [{ "type": "sphere", "center": [582143, 0, 5340122], "radius": 1 }] }"#;
+        load_text("far.json", text, &LoadOptions::default()).expect("right")
+    }
+
     fn at(scene: &Scene, x: f64, y: f64) -> Option<Inspection> {
         inspect(scene, &scene.cameras[0].camera, (200, 100), DVec2::new(x, y))
     }
@@ -203,6 +213,7 @@ mod tests {
         assert_eq!((fact(&ball, "material"), fact(&ball, "metallic"), fact(&ball, "roughness")), ("gold", "1", "0.25"));
         assert_eq!(fact(&ball, "color"), "1 0.8 0.3");
         assert!(ball.point.abs_diff_eq(Vec3::Z, 1e-5), "{}", ball.point);
+        assert_eq!(fact(&at(&far(), 0.5, 0.5).expect("the ball"), "point"), "582143 0 5340123");
         let pane = at(&scene, 0.76, 0.45).expect("the pane");
         assert_eq!(pane.title, "a mesh without a name");
         assert_eq!(fact(&pane, "kind"), "mesh, object 2 of 3");

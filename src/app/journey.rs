@@ -4,6 +4,7 @@ use super::errands::{Errand, News};
 use crate::picture::{NumberedName, PendingFile, PictureError};
 use crate::scene::path::{READABLE_KEYS, Sample, Tolerance};
 use crate::scene::{Camera, CameraPath};
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -155,13 +156,14 @@ impl Journey {
     }
 
     /// Ends the recording. Returns what makes a path of it and writes that to the first of `folders` that can be written;
-    /// `size` is that of the surroundings in metres, `how_to` what to say of a replay.
+    /// `size` is that of the surroundings in metres, `origin` that of the scene in the coordinates of its file, `how_to` what
+    /// to say of a replay.
     pub fn finish(
         &mut self,
         now: Instant,
         camera: Camera,
         folders: Vec<PathBuf>,
-        size: f64,
+        (size, origin): (f64, DVec3),
         how_to: String,
     ) -> Option<Errand> {
         let mut recorder = self.recorder.take()?;
@@ -170,7 +172,7 @@ impl Journey {
         let made = self.made.0.clone();
         self.expected += 1;
         Some(Box::new(move || {
-            let path = CameraPath::fitted(&recorder.samples(), FPS, tolerance)?;
+            let path = CameraPath::fitted(&recorder.samples(), FPS, tolerance)?.moved(origin);
             let text = path.to_json();
             // It can be replayed also where it cannot be written. At the end no one listens any more.
             let _ = made.send(path);
@@ -202,11 +204,11 @@ impl Journey {
         self.replay.take().is_some()
     }
 
-    /// The view of this moment, while a path is replayed.
-    pub fn camera(&mut self, now: Instant, base: &Camera) -> Option<Camera> {
+    /// The view of this moment, while a path is replayed, in a scene of that origin.
+    pub fn camera(&mut self, now: Instant, base: &Camera, origin: DVec3) -> Option<Camera> {
         let (path, began) = self.replay.as_ref()?;
         let passed = now.saturating_duration_since(*began).as_secs_f64();
-        let camera = path.camera_after(passed, base);
+        let camera = path.camera_after(passed, base, origin);
         if passed >= path.duration() {
             self.replay = None;
         }
@@ -250,7 +252,7 @@ mod tests {
     /// What is told of the recording, once it is made and written.
     fn told(journey: &mut Journey, end: (Instant, Camera), folders: &[&Path]) -> News {
         let folders = folders.iter().map(|folder| folder.to_path_buf()).collect();
-        let errand = journey.finish(end.0, end.1, folders, 10.0, ": P replays it".to_owned());
+        let errand = journey.finish(end.0, end.1, folders, (10.0, DVec3::ZERO), ": P replays it".to_owned());
         assert_eq!(journey.replay(end.0), Start::TooSoon);
         errand.expect("there is a recording")().expect("there is news")
     }
@@ -277,11 +279,11 @@ mod tests {
         assert_eq!(journey.replay(start), Start::Begun);
         for i in 0..=40 {
             let t = f64::from(i) * 0.1;
-            let camera = journey.camera(after(start, t), &view(7.0)).expect("it goes on");
+            let camera = journey.camera(after(start, t), &view(7.0), DVec3::ZERO).expect("it goes on");
             let expected = (t - 1.0).clamp(0.0, 2.0) as f32;
             // Between two moments that were seen it may lag by one of them.
             assert!((camera.eye.x - expected).abs() < 0.012, "at {t}: {camera:?}");
-            assert_eq!(camera, path.camera_after(t, &view(7.0)), "as any replay of the file");
+            assert_eq!(camera, path.camera_after(t, &view(7.0), DVec3::ZERO), "as any replay of the file");
         }
         assert!(!journey.is_replaying(), "it ended");
     }
@@ -340,7 +342,8 @@ mod tests {
             assert!(text.contains(&why) && text.ends_with("): P replays it"), "{text}");
             assert_eq!(text.contains("Path written to"), folders.len() == 2, "{text}");
             assert_eq!(journey.replay(start), Start::Begun);
-            assert_eq!(journey.camera(after(start, 1.0), &view(7.0)).map(|camera| camera.eye), Some(view(1.0).eye));
+            let replayed = journey.camera(after(start, 1.0), &view(7.0), DVec3::ZERO);
+            assert_eq!(replayed.map(|camera| camera.eye), Some(view(1.0).eye));
         }
         assert_eq!(folder.names(), ["raywalk-path-0001.json"]);
     }

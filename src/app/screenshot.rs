@@ -6,9 +6,10 @@ use super::maps::Map;
 use super::tracer::Job;
 use crate::picture::{EightBit, Note, NumberedName, PendingFile, write_annotated};
 use crate::render::Film;
+use crate::scene::camera::shortest;
 use crate::scene::{Camera, Limits, NamedCamera};
 use crate::settings::{ROWS, Row, Settings, Supersample};
-use glam::Vec3;
+use glam::DVec3;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -157,7 +158,7 @@ fn notes(shot: &Shot) -> Vec<Note> {
         ("Software", format!("raywalk {}", env!("CARGO_PKG_VERSION"))),
         ("raywalk:command", command(shot, &settings)),
         ("raywalk:scene", scene),
-        ("raywalk:camera", shot.job.camera.to_json()),
+        ("raywalk:camera", shot.job.scene.file_camera(&shot.job.camera).to_json()),
         ("raywalk:settings", serde_json::Value::Object(values).to_string()),
     ];
     if !place.turned.is_empty() {
@@ -189,8 +190,10 @@ fn picture_rows() -> impl Iterator<Item = &'static Row> {
 /// The command line that renders the same picture.
 fn command(shot: &Shot, settings: &Settings) -> String {
     let place = &shot.place;
-    let vector = |vector: Vec3| format!("{},{},{}", vector.x, vector.y, vector.z);
+    let vector = |vector: DVec3| format!("{},{},{}", vector.x, vector.y, vector.z);
     let Camera { eye, look_at, up, fov, .. } = shot.job.camera;
+    let (eye, look_at) = (shot.job.scene.in_file(eye), shot.job.scene.in_file(look_at));
+    let up = DVec3::from(up.to_array().map(shortest));
     let mut words = vec!["raywalk".to_owned(), "render".to_owned()];
     words.extend(place.file.as_ref().map(|file| quoted(file.as_os_str())));
     words.push(format!("--size {}x{}", shot.picture.width, shot.picture.height));

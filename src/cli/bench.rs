@@ -148,8 +148,11 @@ fn views(scenes: &[&PathBuf], asked: &ArgMatches, options: &Options) -> Result<V
             if let (Some(warning), false) = (&frames.warning, options.reading.quiet) {
                 stdout::note(&format!("warning: {warning}"));
             }
-            let along: Vec<Camera> =
-                frames.range.clone().map(|n| frames.camera(n, &stage.camera)).collect::<Result<_, _>>()?;
+            let along: Vec<Camera> = frames
+                .range
+                .clone()
+                .map(|n| frames.camera(n, &stage.camera, &stage.loaded.scene))
+                .collect::<Result<_, _>>()?;
             let first = *along.first().ok_or_else(|| Failure::Usage("--frames: no frame is left".to_owned()))?;
             let mut name = format!("path {path_name}");
             if let Some(range) = &options.frames {

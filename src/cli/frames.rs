@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::options::Options;
-use raywalk::scene::{Camera, CameraPath, Warning};
+use raywalk::scene::{Camera, CameraPath, Scene, Warning};
 use std::ops::Range;
 
 /// The frames of a run.
@@ -36,10 +36,10 @@ impl Frames {
         self.path.is_some() && self.range.end - self.range.start > 1
     }
 
-    /// The camera of frame `frame`, moving if there is a path, else `base`.
-    pub fn camera(&self, frame: u64, base: &Camera) -> Result<Camera, Failure> {
+    /// The camera of frame `frame` in `scene`, moving if there is a path, else `base`.
+    pub fn camera(&self, frame: u64, base: &Camera, scene: &Scene) -> Result<Camera, Failure> {
         let Some(path) = &self.path else { return Ok(*base) };
-        let camera = path.camera(frame, base);
+        let camera = path.camera(frame, base, scene.origin);
         let message =
             || format!("frame {frame} of the camera path looks along its own up, or nowhere; change its keys");
         if camera.is_valid() { Ok(camera) } else { Err(Failure::Run(message())) }

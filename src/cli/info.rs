@@ -4,6 +4,7 @@ use super::options::Reading;
 use super::stage;
 use super::{Failure, stdout};
 use clap::ArgMatches;
+use glam::DVec3;
 use raywalk::geometry::Aabb;
 use raywalk::measure::counts::SceneCounts;
 use raywalk::render::Plan;
@@ -34,8 +35,10 @@ struct Info {
     materials: usize,
     textures: Vec<String>,
     cameras: Vec<CameraInfo>,
-    /// Of everything finite; `null` if nothing is.
+    /// Of everything finite, in the coordinates of the file; `null` if nothing is.
     bounds: Option<Bounds>,
+    /// What was taken off all coordinates, since the scene is far from its origin; `null` if nothing was.
+    origin: Option<[f64; 3]>,
     max_depth: u32,
     /// What a frame runs under the default settings, one reason a line.
     pipeline: Vec<String>,
@@ -45,16 +48,16 @@ struct Info {
 #[derive(Debug, Serialize)]
 struct CameraInfo {
     name: String,
-    eye: [f32; 3],
-    look_at: [f32; 3],
+    eye: [f64; 3],
+    look_at: [f64; 3],
     up: [f32; 3],
     fov: f32,
 }
 
 #[derive(Debug, Serialize)]
 struct Bounds {
-    min: [f32; 3],
-    max: [f32; 3],
+    min: [f64; 3],
+    max: [f64; 3],
 }
 
 impl Info {
@@ -69,8 +72,12 @@ impl Info {
             lights_by_type: tally(scene.lights.iter().map(kind_of_light).chain(headlight)),
             materials: scene.materials.len(),
             textures: scene.textures.iter().map(describe_texture).collect(),
-            cameras: scene.cameras.iter().map(CameraInfo::of).collect(),
-            bounds: (min.is_finite() && max.is_finite()).then(|| Bounds { min: min.into(), max: max.into() }),
+            cameras: scene.cameras.iter().map(|named| CameraInfo::of(named, scene)).collect(),
+            bounds: (min.is_finite() && max.is_finite()).then(|| {
+                let [min, max] = [min, max].map(|corner| scene.in_file(corner).to_array());
+                Bounds { min, max }
+            }),
+            origin: (scene.origin != DVec3::ZERO).then(|| scene.origin.to_array()),
             max_depth: scene.render.max_depth,
             pipeline: Plan::new(scene, &Settings::default()).reasons(scene),
             warnings: scene.warnings.iter().map(ToString::to_string).collect(),
@@ -96,6 +103,10 @@ impl Info {
             line("memory", &format!("{:.1} MiB", c.scene_bytes as f64 / f64::from(1 << 20))),
             line("depth", &format!("{} rays on a path", self.max_depth)),
         ];
+        if let Some(origin) = self.origin {
+            let why = "the scene is far from the file's origin; it was moved before its numbers were rounded";
+            lines.push(line("origin", &format!("{origin:?} ({why})")));
+        }
         lines.push("pipeline".to_owned());
         lines.extend(self.pipeline.iter().map(|reason| format!("  {reason}")));
         lines.push(line("warnings", &self.warnings.len().to_string()));
@@ -105,12 +116,12 @@ impl Info {
 }
 
 impl CameraInfo {
-    fn of(named: &NamedCamera) -> Self {
+    fn of(named: &NamedCamera, scene: &Scene) -> Self {
         let camera = &named.camera;
         Self {
             name: named.name.clone(),
-            eye: camera.eye.into(),
-            look_at: camera.look_at.into(),
+            eye: scene.in_file(camera.eye).into(),
+            look_at: scene.in_file(camera.look_at).into(),
             up: camera.up.into(),
             fov: camera.fov,
         }

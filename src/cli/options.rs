@@ -3,7 +3,7 @@
 use super::Failure;
 use super::values::Size;
 use clap::ArgMatches;
-use glam::Vec3;
+use glam::DVec3;
 use raywalk::app::maps::Map;
 use raywalk::picture::MAX_PIXELS;
 use raywalk::render::Planes;
@@ -29,9 +29,10 @@ pub struct Reading {
 pub struct View {
     /// Name or index of a camera of the scene.
     pub camera: Option<String>,
-    pub eye: Option<Vec3>,
-    pub look_at: Option<Vec3>,
-    pub up: Option<Vec3>,
+    /// In the coordinates of the scene's file.
+    pub eye: Option<DVec3>,
+    pub look_at: Option<DVec3>,
+    pub up: Option<DVec3>,
     pub fov: Option<f32>,
     pub size: Option<Size>,
 }
@@ -167,7 +168,7 @@ mod tests {
     fn negative_numbers_are_values() {
         let line = ["raywalk", "render", "--eye", "-7,10,-10", "--threads", "-1", "--exposure", "-0.5"];
         let options = options(&line).expect("right");
-        assert_eq!(options.view.eye, Some(Vec3::new(-7.0, 10.0, -10.0)));
+        assert_eq!(options.view.eye, Some(DVec3::new(-7.0, 10.0, -10.0)));
         assert_eq!((options.settings.threads, options.settings.exposure), (-1, Exposure::Stops(-0.5)));
     }
 

@@ -112,7 +112,7 @@ struct Tracer<'a> {
 impl Tracer<'_> {
     /// Traces frame `number` and adds its cost to `run`.
     fn trace(&mut self, number: u64, run: &mut Run) -> Result<(), Failure> {
-        let camera = self.frames.camera(number, &self.stage.camera)?;
+        let camera = self.frames.camera(number, &self.stage.camera, &self.stage.loaded.scene)?;
         let (scene, settings) = (&self.stage.loaded.scene, &self.stage.settings);
         let completed = timed_frame(run, scene, &camera, settings, &mut self.scratch, &mut self.film);
         // Asked again: Ctrl-C may come while the last tile is traced.
@@ -138,7 +138,7 @@ impl Tracer<'_> {
 
     /// Traces the reference of frame `number`.
     fn trace_reference(&mut self, number: u64, reference: &mut Reference) -> Result<(), Failure> {
-        let camera = self.frames.camera(number, &self.stage.camera)?;
+        let camera = self.frames.camera(number, &self.stage.camera, &self.stage.loaded.scene)?;
         let Reference { settings, film, .. } = reference;
         let stats = render_frame(&self.stage.loaded.scene, &camera, settings, &mut self.scratch, film);
         self.interrupt.check()?;

@@ -102,9 +102,9 @@ pub fn camera(scene: &Scene, view: &View) -> Result<(String, Camera), Failure> {
     })?;
     let base = named.camera;
     let camera = Camera {
-        eye: view.eye.unwrap_or(base.eye),
-        look_at: view.look_at.unwrap_or(base.look_at),
-        up: view.up.unwrap_or(base.up),
+        eye: view.eye.map_or(base.eye, |eye| (eye - scene.origin).as_vec3()),
+        look_at: view.look_at.map_or(base.look_at, |point| (point - scene.origin).as_vec3()),
+        up: view.up.map_or(base.up, |up| up.as_vec3()),
         fov: view.fov.unwrap_or(base.fov),
         ..base
     };
@@ -112,6 +112,7 @@ pub fn camera(scene: &Scene, view: &View) -> Result<(String, Camera), Failure> {
         return Ok((named.name.clone(), camera));
     }
     let Camera { eye, look_at, up, .. } = camera;
+    let (eye, look_at) = (scene.in_file(eye), scene.in_file(look_at));
     Err(Failure::Usage(format!(
         "no view from {eye} to {look_at} with {up} up: choose --look-at apart from --eye, and --up across the view"
     )))

@@ -43,7 +43,7 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     // Without a path all frames are alike.
     let range = if frames.differ() { frames.range.clone() } else { frames.first().range };
     let task = Task {
-        cameras: range.map(|n| frames.camera(n, &stage.camera)).collect::<Result<_, _>>()?,
+        cameras: range.map(|n| frames.camera(n, &stage.camera, &stage.loaded.scene)).collect::<Result<_, _>>()?,
         size: (stage.size.width, stage.size.height),
         settings: options.settings.clone(),
         fixed: ROWS.iter().map(|row| row.name).filter(|name| is_given(name)).collect(),

@@ -1,6 +1,6 @@
 //! Values as they are typed: sizes, vectors, ranges, limits.
 
-use glam::Vec3;
+use glam::DVec3;
 use raywalk::scene::Limits;
 use std::ops::Range;
 
@@ -20,10 +20,11 @@ pub fn size(text: &str) -> Result<Size, String> {
 }
 
 /// `-7,10,-10`.
-pub fn vector(text: &str) -> Result<Vec3, String> {
-    let numbers: Option<Vec<f32>> = text.split(',').map(number).collect();
-    let numbers: Option<[f32; 3]> = numbers.and_then(|n| n.try_into().ok());
-    numbers.map(Vec3::from).ok_or_else(|| "expected three numbers x,y,z, such as -7,10,-10".to_owned())
+pub fn vector(text: &str) -> Result<DVec3, String> {
+    let is_known = |value: &f64| (*value as f32).is_finite();
+    let numbers: Option<Vec<f64>> = text.split(',').map(|n| n.trim().parse().ok().filter(is_known)).collect();
+    let numbers: Option<[f64; 3]> = numbers.and_then(|n| n.try_into().ok());
+    numbers.map(DVec3::from).ok_or_else(|| "expected three numbers x,y,z, such as -7,10,-10".to_owned())
 }
 
 /// Degrees between 0 and 180.
@@ -66,7 +67,7 @@ mod tests {
 
     #[test]
     fn vectors_have_three_finite_numbers_of_either_sign() {
-        assert_eq!(vector("-7,10,-10.5"), Ok(Vec3::new(-7.0, 10.0, -10.5)));
+        assert_eq!(vector("-7,10,-10.5"), Ok(DVec3::new(-7.0, 10.0, -10.5)));
         for bad in ["", "1,2", "1,2,3,4", "1,2,x", "1,2,inf", "1,2,1e39", "nan,0,0"] {
             assert!(vector(bad).is_err(), "{bad}");
         }

@@ -134,7 +134,7 @@ fn load(options: &Options) -> Result<Load, Failure> {
         let stage = Stage::set(&options)?;
         let Size { width, height } = stage.size;
         Ok(Arrival {
-            camera: frames.camera(frames.range.start, &stage.camera)?,
+            camera: frames.camera(frames.range.start, &stage.camera, &stage.loaded.scene)?,
             scene: stage.loaded.scene,
             place: options.reading.scene.as_deref().map(place_of),
             file: options.reading.scene,

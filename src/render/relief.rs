@@ -2,7 +2,7 @@
 
 use super::frame::Frame;
 use super::gather::{Hits, Surfaces};
-use super::texture_place::{Place, Sight};
+use super::texture_place::{Place, Places, Sight};
 use crate::math::V3;
 use crate::scene::material::{Relief, Scaled};
 use crate::scene::texture::Texture;
@@ -61,8 +61,7 @@ fn moved<S: Simd>(place: &Place<S>, step: [S::f32s; 2], steps: S::f32s) -> Place
     Place { uv: [place.uv[0] + step[0] * steps, place.uv[1] + step[1] * steps], gradients: place.gradients }
 }
 
-/// The normal that a surface's maps give it, on the side of the geometric one. `places` are those of its two sets of
-/// texture coordinates.
+/// The normal that a surface's maps give it, on the side of the geometric one.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what is known of one object's lanes")]
 pub(super) fn normal<S: Simd>(
@@ -71,13 +70,13 @@ pub(super) fn normal<S: Simd>(
     hits: &Hits<'_>,
     surfaces: &Surfaces<S>,
     sight: &Sight<S>,
-    places: &[Place<S>; 2],
+    places: &Places<S>,
     relief: &Relief,
     members: u64,
 ) -> V3<S::f32s> {
     let mut normal = surfaces.shading_normal;
     if let Some(Scaled { lookup, scale }) = &relief.normal {
-        let place = &places[usize::from(lookup.set)];
+        let place = places.get(frame, lookup);
         let found = place.look::<false>(simd, frame, lookup, sight, members).color;
         let (x, y, z) = ((found.x * 2.0 - 1.0) * *scale, (found.y * 2.0 - 1.0) * *scale, found.z * 2.0 - 1.0);
         let [along_u, along_v] = tangents(simd, frame, hits, surfaces, normal, place.gradients_of(lookup));
@@ -85,7 +84,7 @@ pub(super) fn normal<S: Simd>(
         normal = bent.normalize_or(normal);
     }
     if let Some(bump) = &relief.bump {
-        let slope = slope(simd, frame, sight, &places[usize::from(bump.lookup.set)], bump, members);
+        let slope = slope(simd, frame, sight, places.get(frame, &bump.lookup), bump, members);
         // The surface's gradient of the height tilts the normal away from it (Mikkelsen, "Bump mapping unparametrized
         // surfaces on the GPU", 2010).
         let slope = slope - normal.scale(normal.dot(slope));

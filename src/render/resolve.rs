@@ -14,13 +14,19 @@ pub struct Encoder {
     table: &'static SrgbTable,
     /// What exposure multiplies light by.
     pub gain: f32,
-    tone_map: ToneMap,
+    /// The tone curve.
+    pub tone_map: ToneMap,
 }
 
 impl Encoder {
     /// The encoder that the settings ask for, what they leave to the scene filled in.
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
-        Self::with(scene.stops(settings.exposure), settings.tone_map.unwrap_or(scene.render.tone_map))
+        // What is unlit has the colours of the picture already: where nothing else is seen, there is no range to compress.
+        let tone_map = match scene.is_all_unlit() {
+            true => ToneMap::None,
+            false => settings.tone_map.unwrap_or(scene.render.tone_map),
+        };
+        Self::with(scene.stops(settings.exposure), tone_map)
     }
 
     fn with(stops: f32, tone_map: ToneMap) -> Self {
@@ -67,14 +73,19 @@ impl Encoder {
     }
 }
 
+/// Where the tone curve starts to compress.
+const START: f32 = 0.8 - 0.04;
+/// How fast what is brighter loses its colour.
+const DESATURATION: f32 = 0.15;
+const ROOM: f32 = 1.0 - START;
+
 /// Khronos PBR Neutral tone mapper (specification, 2024): base colours pass unchanged, highlights are compressed.
+///
+/// No light is negative; for [`undo_neutral`] the curve goes on below 0 so that every colour is reached.
 #[inline(always)]
 fn neutral<S: Simd>(simd: S, color: V3<S::f32s>) -> V3<S::f32s> {
-    const START: f32 = 0.8 - 0.04;
-    const DESATURATION: f32 = 0.15;
-    const ROOM: f32 = 1.0 - START;
     let one = S::f32s::splat(simd, 1.0);
-    let least = color.x.min(color.y).min(color.z);
+    let least = color.x.min(color.y).min(color.z).max(0.0);
     let dark = least.simd_lt(S::f32s::splat(simd, 0.08));
     let offset = dark.select(least - least * least * 6.25, S::f32s::splat(simd, 0.04));
     let shifted = color - V3::all(offset);
@@ -88,6 +99,30 @@ fn neutral<S: Simd>(simd: S, color: V3<S::f32s>) -> V3<S::f32s> {
     let compressed = shifted.scale(new_peak / peak).scale(one - share) + V3::all(new_peak * share);
     V3::select(bright, compressed, shifted)
 }
+
+/// The light that [`neutral`] shows as a colour from 0 to 1. That of full brightness would be infinite: what is brighter
+/// than [`BRIGHTEST`] is shown as that, which is less than 2/255 darker.
+#[inline(always)]
+pub fn undo_neutral<S: Simd>(simd: S, color: V3<S::f32s>) -> V3<S::f32s> {
+    let (zero, one) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, 1.0));
+    let brightest = S::f32s::splat(simd, BRIGHTEST);
+    let color = V3::new(color.x.max(zero), color.y.max(zero), color.z.max(zero));
+    let shown = color.x.max(color.y).max(color.z);
+    let too_bright = shown.simd_gt(brightest);
+    let color = color.scale(too_bright.select(brightest / shown, one));
+    let shown = shown.min(brightest);
+    let bright = shown.simd_ge(START);
+    let peak = bright.select(S::f32s::splat(simd, ROOM * ROOM) / (one - shown) - (ROOM - START), shown);
+    let share = one - one / ((peak - shown) * DESATURATION + one);
+    let saturated = (color - V3::all(shown * share)).scale(peak / (shown * (one - share)).max(f32::MIN_POSITIVE));
+    let shifted = V3::select(bright, saturated, color);
+    let least = shifted.x.min(shifted.y).min(shifted.z).max(zero);
+    let offset = least.simd_lt(0.04).select((least * (1.0 / 6.25)).sqrt() - least, S::f32s::splat(simd, 0.04));
+    shifted + V3::all(offset)
+}
+
+/// The brightest colour whose light [`undo_neutral`] gives: 254 of 255 in sRGB.
+const BRIGHTEST: f32 = 0.992;
 
 /// For each bucket of linear values its least byte, and the linear value at which the next byte starts.
 ///
@@ -199,5 +234,23 @@ mod tests {
         assert_eq!(base, encode(ToneMap::None, [0.46, 0.26, 0.16]));
         let bright = encode(ToneMap::Neutral, [20.0, 10.0, 5.0]);
         assert!(bright[0] > 240, "{bright:?}");
+    }
+
+    #[test]
+    fn every_colour_is_shown_as_the_light_that_undoes_the_curve() {
+        let undone = |color| dispatch!(SimdToken::best(), simd => undo_neutral(simd, V3::splat(simd, glam::Vec3::from(color))).lane(0));
+        for r in (0..=255).step_by(15) {
+            for g in (0..=255).step_by(15) {
+                for b in (0..=255).step_by(15) {
+                    let bytes = [r, g, b].map(|byte| byte as u8);
+                    let light = undone(bytes.map(crate::scene::texture::srgb_to_linear));
+                    let shown = encode(ToneMap::Neutral, light.into());
+                    assert!(light.is_finite());
+                    for (shown, byte) in shown.iter().zip(bytes) {
+                        assert!(shown.abs_diff(byte) <= 2, "{bytes:?} is shown as {shown:?}");
+                    }
+                }
+            }
+        }
     }
 }

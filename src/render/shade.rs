@@ -8,6 +8,7 @@ use super::gather::{Hits, Surfaces, surfaces, surfaces_of_one, surfaces_of_sever
 use super::leave;
 use super::materials::{Materials, MixedMaterials, OneMaterial};
 use super::queue::{RayQueue, ShadowPacket};
+use super::resolve::undo_neutral;
 use super::samples::CELL;
 use super::secondary::{self, Incident};
 use super::skin::Skin;
@@ -16,6 +17,7 @@ use super::texture_place::Sight;
 use super::tile::{Seen, Worker};
 use crate::geometry::{NO_PRIMITIVE, PrimitiveIndex};
 use crate::math::V3;
+use crate::settings::ToneMap;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::Vec3;
@@ -241,7 +243,10 @@ fn shade_surfaces<S: Simd>(
         ambient = V3::select(unlit, V3::splat(simd, Vec3::ONE), ambient);
     }
     let covered = if frame.plan.blending { weight.scale(skin.coverage) } else { weight };
-    let own = covered * (opacity * ambient * skin.color + skin.emission);
+    let mut own = covered * (opacity * ambient * skin.color + skin.emission);
+    if frame.plan.unlit && frame.encoder.tone_map == ToneMap::Neutral {
+        own = unmapped(simd, frame, materials, own);
+    }
     let background = weight * V3::splat(simd, frame.scene.render.background);
     let own = V3::select(active, own, background);
     colors.deposit(simd, level == 1, samples, present::<S>(rays, at), own);
@@ -282,6 +287,15 @@ fn shade_surfaces<S: Simd>(
     if paint.is_none() {
         follow(simd, frame, level, at, hits, incoming, surfaces, &view, materials, &skin, worker);
     }
+}
+
+/// `own`, but the light of unlit surfaces so that the tone curve shows their colour. Its share of the pixel is part of the
+/// colour that is to be shown: half a colour is not half of its light.
+#[inline(always)]
+fn unmapped<S: Simd>(simd: S, frame: &Frame<'_>, materials: &impl Materials<S>, own: V3<S::f32s>) -> V3<S::f32s> {
+    let gain = S::f32s::splat(simd, frame.tables.unlit_gain());
+    let light = undo_neutral(simd, own.scale(S::f32s::splat(simd, 1.0) / gain)).scale(gain);
+    V3::select(materials.lanes(simd, |material| material.unlit), light, own)
 }
 
 /// Appends the rays that follow from a packet's hits.

@@ -6,7 +6,7 @@ use super::materials::Materials;
 use super::queue::MOST_LANES;
 use super::relief;
 use super::tables::Row;
-use super::texture_place::{Place, Sight};
+use super::texture_place::{Places, Sight};
 use crate::math::V3;
 use crate::scene::material::Lookup;
 use crate::scene::texels::Texel;
@@ -201,14 +201,11 @@ impl<S: Simd> Skin<S> {
         let mut skin = *self;
         let material = &frame.tables.materials[frame.scene.objects[object.number as usize].material as usize];
         let maps = &material.maps;
-        let mut places = [Place::of(simd, frame, hits, surfaces, object.number, object.sides, 0); 2];
-        if maps.uses_second_set {
-            places[1] = Place::of(simd, frame, hits, surfaces, object.number, object.sides, 1);
-        }
+        let mut places = Places::of(simd, frame, hits, surfaces, object.number, object.sides, maps);
         if material.relieved {
             let relief = &maps.relief;
             if let Some(parallax) = &relief.parallax {
-                let place = &mut places[usize::from(parallax.lookup.set)];
+                let place = places.get_mut(frame, &parallax.lookup);
                 *place = relief::shifted(simd, frame, surfaces, sight, place, parallax, object.members);
             }
             skin.relieved = relief::normal(simd, frame, hits, surfaces, sight, &places, relief, object.members);
@@ -259,8 +256,7 @@ impl<S: Simd> Skin<S> {
 struct Looks<'a, S: Simd> {
     frame: &'a Frame<'a>,
     sight: &'a Sight<S>,
-    /// By their first and second texture coordinates.
-    places: [Place<S>; 2],
+    places: Places<S>,
     /// Bit set of the lanes that matter.
     members: u64,
 }
@@ -268,7 +264,8 @@ struct Looks<'a, S: Simd> {
 impl<S: Simd> Looks<'_, S> {
     #[inline(always)]
     fn at<const OPACITY: bool>(&self, simd: S, lookup: &Lookup) -> Texel<S> {
-        self.places[usize::from(lookup.set)].look::<OPACITY>(simd, self.frame, lookup, self.sight, self.members)
+        let place = self.places.get(self.frame, lookup);
+        place.look::<OPACITY>(simd, self.frame, lookup, self.sight, self.members)
     }
 }
 

@@ -4,7 +4,7 @@ use crate::geometry::{
     Contacts, Geometry, Home, Opaque, OpaqueList, PrimitiveIndex, SharedMesh, VertexAttributes, VertexExtras,
 };
 use crate::scene::material::{Lookup, Model, Relief, Scaled};
-use crate::scene::{Material, Scene};
+use crate::scene::{Material, Scene, Texture};
 use glam::{Vec3, Vec4};
 
 /// Numbers of a material, in the order in which shading reads them.
@@ -93,30 +93,26 @@ pub struct Maps {
     pub relief: Relief,
     /// Whether any of them asks for the second texture coordinates.
     pub uses_second_set: bool,
+    /// Whether any of them is an image.
+    pub uses_images: bool,
+    /// Whether any of them is a checker.
+    pub uses_checkers: bool,
 }
 
 impl Maps {
-    fn new(material: &Material) -> Self {
-        let mut maps = Self {
+    fn new(material: &Material, textures: &[Texture]) -> Self {
+        let is_checker = |lookup: &Lookup| matches!(textures[lookup.texture as usize], Texture::Checker { .. });
+        Self {
             color: material.color.texture,
             emission: material.emission.texture,
             metallic_roughness: material.metallic_roughness,
             occlusion: material.occlusion,
             transmission: material.transmission,
             relief: material.relief,
-            uses_second_set: false,
-        };
-        let uses_second_set = maps.lookups().any(|lookup| lookup.set != 0);
-        maps.uses_second_set = uses_second_set;
-        maps
-    }
-
-    /// All of them.
-    pub fn lookups(&self) -> impl Iterator<Item = Lookup> {
-        let Relief { normal, bump, parallax } = self.relief;
-        let scaled = [self.occlusion, normal, bump, parallax].map(|scaled| scaled.map(|scaled| scaled.lookup));
-        let plain = [self.color, self.emission, self.metallic_roughness, self.transmission];
-        plain.into_iter().chain(scaled).flatten()
+            uses_second_set: material.lookups().any(|lookup| lookup.set != 0),
+            uses_images: material.lookups().any(|lookup| !is_checker(lookup)),
+            uses_checkers: material.lookups().any(is_checker),
+        }
     }
 }
 
@@ -124,7 +120,7 @@ impl Maps {
 pub(super) const MIRROR_ROUGHNESS: f32 = 0.1;
 
 impl FlatMaterial {
-    fn new(material: &Material) -> Self {
+    fn new(material: &Material, textures: &[Texture]) -> Self {
         let (color, emission) = (material.color.factor, material.emission.factor);
         let mut rows = [0.0; ROWS];
         let mut put = |row: Row, values: &[f32]| {
@@ -158,8 +154,8 @@ impl FlatMaterial {
             }
         }
         let metallic_roughness = matches!(material.model, Model::MetallicRoughness { .. }) && !material.unlit;
-        let maps = Maps::new(material);
-        let textured = maps.lookups().next().is_some();
+        let maps = Maps::new(material, textures);
+        let textured = material.lookups().next().is_some();
         let mirrors = metallic_roughness || material.reflectivity != Vec3::ZERO;
         Self {
             shiny: rows[Row::Specular as usize..][..3] != [0.0; 3],
@@ -253,7 +249,8 @@ impl Tables {
         let transparent_bodies = (0..scene.objects.len() as u32)
             .filter(|&o| scene.objects[o as usize].body && material_of(o).is_transparent())
             .collect();
-        let materials: Vec<FlatMaterial> = scene.materials.iter().map(FlatMaterial::new).collect();
+        let materials: Vec<FlatMaterial> =
+            scene.materials.iter().map(|material| FlatMaterial::new(material, &scene.textures)).collect();
         let mirrors = |object: u32| materials[scene.objects[object as usize].material as usize].secondary;
         let (own, instances) = (|| scene.geometry.own(), &scene.geometry.instances);
         let flat_mirrors = materials.iter().any(|material| material.secondary)
@@ -293,6 +290,11 @@ impl Tables {
                 flat.put(Row::Color, &(material.color.factor * gain).to_array());
             }
         }
+    }
+
+    /// What the colours of unlit materials are multiplied by.
+    pub fn unlit_gain(&self) -> f32 {
+        self.unlit_gain
     }
 
     /// The material of a primitive.

@@ -6,11 +6,13 @@
 
 use super::frame::Frame;
 use super::gather::{Hits, Surfaces};
+use super::tables::Maps;
 use crate::math::V3;
+use crate::scene::Object;
 use crate::scene::material::Lookup;
-use crate::scene::object::Mapping;
+use crate::scene::object::{Mapping, Reading};
 use crate::scene::texels::Texel;
-use crate::scene::texture::Coordinates;
+use crate::scene::texture::{Coordinates, Texture};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::{Affine2, Vec2};
@@ -59,9 +61,16 @@ pub(super) struct Place<S: Simd> {
     pub gradients: [V3<S::f32s>; 2],
 }
 
-impl<S: Simd> Place<S> {
-    /// Where object `number` was hit, by its first (0) or second (1) texture coordinates. `sides` are the lanes that hit
-    /// its first primitive.
+/// Where an object lies on the textures of its material.
+pub(super) struct Places<S: Simd> {
+    /// By the first and second coordinates that corners carry; else those of images and those of checkers.
+    places: [Place<S>; 2],
+    /// Corners carry them.
+    carried: bool,
+}
+
+impl<S: Simd> Places<S> {
+    /// Where object `number` was hit, as far as `maps` asks. `sides` are the lanes that hit its first primitive.
     #[inline(always)]
     pub fn of(
         simd: S,
@@ -70,17 +79,63 @@ impl<S: Simd> Place<S> {
         surfaces: &Surfaces<S>,
         number: u32,
         sides: Mask<S>,
-        set: u8,
+        maps: &Maps,
     ) -> Self {
         let object = &frame.scene.objects[number as usize];
         if object.mapping == Mapping::Vertex {
-            return Self::of_corners(simd, frame, hits, surfaces, set);
+            let mut places = [Place::of_corners(simd, frame, hits, surfaces, 0); 2];
+            if maps.uses_second_set {
+                places[1] = Place::of_corners(simd, frame, hits, surfaces, 1);
+            }
+            return Self { places, carried: true };
         }
+        let first = if maps.uses_images { Reading::Image } else { Reading::Checker };
+        let mut places = [Place::of_shape(simd, frame, surfaces, object, sides, first); 2];
+        if maps.uses_images && maps.uses_checkers {
+            places[1] = Place::of_shape(simd, frame, surfaces, object, sides, Reading::Checker);
+        }
+        Self { places, carried: false }
+    }
+
+    /// The index of the place where a texture is looked up.
+    #[inline(always)]
+    fn index(&self, frame: &Frame<'_>, lookup: &Lookup) -> usize {
+        match self.carried {
+            true => usize::from(lookup.set != 0),
+            false => usize::from(matches!(frame.scene.textures[lookup.texture as usize], Texture::Checker { .. })),
+        }
+    }
+
+    /// The place where a texture is looked up.
+    #[inline(always)]
+    pub fn get(&self, frame: &Frame<'_>, lookup: &Lookup) -> &Place<S> {
+        &self.places[self.index(frame, lookup)]
+    }
+
+    /// The same, to be moved.
+    #[inline(always)]
+    pub fn get_mut(&mut self, frame: &Frame<'_>, lookup: &Lookup) -> &mut Place<S> {
+        let index = self.index(frame, lookup);
+        &mut self.places[index]
+    }
+}
+
+impl<S: Simd> Place<S> {
+    /// By the shape of an object.
+    #[inline(always)]
+    fn of_shape(
+        simd: S,
+        frame: &Frame<'_>,
+        surfaces: &Surfaces<S>,
+        object: &Object,
+        sides: Mask<S>,
+        reading: Reading,
+    ) -> Self {
         let point = &surfaces.point;
-        let uv = object.texture_coordinates(simd, point.position, point.normal, sides);
+        let uv = object.texture_coordinates(simd, point.position, point.normal, sides, reading);
         let mut gradients = [V3::zero(simd); 2];
         if frame.plan.gradients {
-            gradients = object.texture_gradients(simd, point.position, point.normal, sides);
+            gradients = object.texture_gradients(simd, point.position, point.normal, sides, reading);
         }
         Self { uv, gradients }
     }

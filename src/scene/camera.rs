@@ -4,8 +4,7 @@ use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// A pinhole camera in a right-handed world; angles in degrees, the field of view vertical.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(into = "Written", try_from = "Written")]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Position of the eye.
     pub eye: Vec3,
@@ -34,12 +33,13 @@ impl Default for Camera {
     }
 }
 
-/// A camera as a scene file writes it.
-#[derive(Serialize, Deserialize)]
+/// A camera in the coordinates of its file, as scene files write it. A scene may be moved before it is traced: see
+/// [`Scene::origin`](super::Scene::origin).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Written {
-    position: [f32; 3],
-    look_at: [f32; 3],
+pub struct FileCamera {
+    position: [f64; 3],
+    look_at: [f64; 3],
     up: [f32; 3],
     fov: f32,
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -52,21 +52,49 @@ fn is_zero(near: &f32) -> bool {
     *near == 0.0
 }
 
-impl From<Camera> for Written {
-    fn from(Camera { eye, look_at, up, fov, near, far }: Camera) -> Self {
-        let (position, look_at, up) = (eye.to_array(), look_at.to_array(), up.to_array());
-        Self { position, look_at, up, fov, near, far: far.is_finite().then_some(far) }
+impl FileCamera {
+    /// A camera of a scene that was moved so that `origin` is at its origin.
+    pub fn of(camera: &Camera, origin: DVec3) -> Self {
+        let Camera { eye, look_at, up, fov, near, far } = *camera;
+        let [position, look_at] = [eye, look_at].map(|point| in_file(point, origin).to_array());
+        Self { position, look_at, up: up.to_array(), fov, near, far: far.is_finite().then_some(far) }
+    }
+
+    /// The camera in a scene that was moved so; `None` where it cannot make rays there.
+    pub fn camera(&self, origin: DVec3) -> Option<Camera> {
+        let [eye, look_at] = [self.position, self.look_at].map(|point| (DVec3::from(point) - origin).as_vec3());
+        let far = self.far.unwrap_or(f32::INFINITY);
+        let camera = Camera { eye, look_at, up: self.up.into(), fov: self.fov, near: self.near, far };
+        camera.is_valid().then_some(camera)
+    }
+
+    /// Whether it can make rays in some scene.
+    pub fn is_valid(&self) -> bool {
+        self.camera(self.position.into()).is_some() && DVec3::from(self.position).as_vec3().is_finite()
+    }
+
+    /// The camera as JSON, as in a scene file. Read again for a scene that was not moved it is the same, bit for bit.
+    pub fn to_json(&self) -> String {
+        // Numbers and lists can always be written.
+        serde_json::to_string(self).unwrap_or_default()
     }
 }
 
-impl TryFrom<Written> for Camera {
-    type Error = &'static str;
-
-    fn try_from(Written { position, look_at, up, fov, near, far }: Written) -> Result<Self, Self::Error> {
-        let far = far.unwrap_or(f32::INFINITY);
-        let camera = Self { eye: position.into(), look_at: look_at.into(), up: up.into(), fov, near, far };
-        if camera.is_valid() { Ok(camera) } else { Err("the camera cannot make rays") }
+/// A camera of a scene that was not moved.
+impl From<Camera> for FileCamera {
+    fn from(camera: Camera) -> Self {
+        Self::of(&camera, DVec3::ZERO)
     }
+}
+
+/// A point of a scene that was moved so that `origin` is at its origin, in the coordinates of its file.
+pub fn in_file(point: Vec3, origin: DVec3) -> DVec3 {
+    DVec3::from(point.to_array().map(shortest)) + origin
+}
+
+/// The number that is written with the fewest digits of all that round to this one.
+pub fn shortest(number: f32) -> f64 {
+    number.to_string().parse().unwrap_or(f64::from(number))
 }
 
 /// The camera's basis for one picture size: pixel (x, y), row 0 on top, looks along
@@ -93,12 +121,6 @@ pub struct CameraFrame {
 }
 
 impl Camera {
-    /// The camera as JSON, as in a scene file. Read again it is the same, bit for bit.
-    pub fn to_json(&self) -> String {
-        // Numbers and lists can always be written.
-        serde_json::to_string(self).unwrap_or_default()
-    }
-
     /// A camera at `eye` with `yaw` 0 looking along -Z, positive turning left, and positive `pitch` looking up (degrees).
     pub fn from_yaw_pitch(eye: Vec3, yaw: f32, pitch: f32, fov: f32) -> Self {
         let (yaw, pitch) = (f64::from(yaw).to_radians(), f64::from(pitch).to_radians());
@@ -170,6 +192,22 @@ mod tests {
         let camera = Camera::from_yaw_pitch(Vec3::splat(1e7), 30.0, 10.0, 60.0);
         let near = Camera::from_yaw_pitch(Vec3::ZERO, 30.0, 10.0, 60.0);
         assert!(camera.frame(4, 4).forward.abs_diff_eq(near.frame(4, 4).forward, 1e-6));
+    }
+
+    #[test]
+    fn a_camera_is_written_in_the_coordinates_of_its_file() {
+        let camera =
+            Camera { eye: Vec3::new(0.35, 1.6, -2.25), look_at: Vec3::new(-1.0, 0.1, 7.0), ..Camera::default() };
+        let origin = DVec3::new(582_143.0, 0.0, 5_340_122.0);
+        let text = FileCamera::of(&camera, origin).to_json();
+        assert!(text.starts_with(r#"{"position":[582143.35,1.6,5340119.75]"#), "{text}");
+        let read: FileCamera = serde_json::from_str(&text).unwrap();
+        let back = read.camera(origin).unwrap();
+        assert!(back.eye.abs_diff_eq(camera.eye, 1e-6) && back.look_at.abs_diff_eq(camera.look_at, 1e-6), "{back:?}");
+        let near: FileCamera = serde_json::from_str(&FileCamera::of(&camera, DVec3::ZERO).to_json()).unwrap();
+        assert_eq!(near.camera(DVec3::ZERO), Some(camera));
+        assert!(read.is_valid());
+        assert!(!FileCamera::of(&Camera { look_at: camera.eye, ..camera }, origin).is_valid());
     }
 
     #[test]

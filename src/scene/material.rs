@@ -222,6 +222,16 @@ impl<T> Material<T> {
         self.thin || self.is_blended()
     }
 
+    /// All textures that are looked up.
+    pub fn lookups(&self) -> impl Iterator<Item = &Lookup<T>> {
+        let Relief { normal, bump, parallax } = &self.relief;
+        let scaled =
+            [&self.occlusion, normal, bump, parallax].map(|scaled| scaled.as_ref().map(|scaled| &scaled.lookup));
+        let (color, emission) = (self.color.texture.as_ref(), self.emission.texture.as_ref());
+        let plain = [color, emission, self.metallic_roughness.as_ref(), self.transmission.as_ref()];
+        plain.into_iter().chain(scaled).flatten()
+    }
+
     /// Takes the metal from a metallic-roughness material: rough metal looks the same all over where the only light is at
     /// the eye.
     pub fn take_metal(&mut self) {

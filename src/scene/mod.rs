@@ -26,7 +26,7 @@ pub mod texture;
 
 pub use build::Instancing;
 pub use builtin::{builtin, nothing};
-pub use camera::Camera;
+pub use camera::{Camera, FileCamera};
 pub use error::{SceneError, Warning};
 pub use format::{FORMATS, Format, LoadOptions, load, load_embedded, load_text, read_camera};
 pub use light::Light;
@@ -39,7 +39,7 @@ pub use texture::Texture;
 
 use crate::geometry::{Aabb, Geometry};
 use crate::settings::{Exposure, Settings, ToneMap};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -98,6 +98,9 @@ pub struct Scene {
     pub build_ms: f64,
     /// Shapes and the tree over them. Shared, as are the objects, by scenes that differ in their lights alone.
     pub geometry: Arc<Geometry>,
+    /// The place of the file that is at the origin of the scene; what is far from its own origin is moved in double precision
+    /// when it is built. 0 in all other scenes.
+    pub origin: DVec3,
     /// Leaf objects, depth first in file order; a hit's object index points here.
     pub objects: Arc<[Object]>,
     /// Materials; objects point here. Never empty.
@@ -153,6 +156,21 @@ impl Scene {
             Exposure::Stops(_) => 1.0,
             Exposure::Auto | Exposure::Scene => libm::exp2f(-self.stops(exposure)),
         }
+    }
+
+    /// Whether it has objects and all of them show their colour whatever the light.
+    pub fn is_all_unlit(&self) -> bool {
+        !self.objects.is_empty() && self.objects.iter().all(|object| self.materials[object.material as usize].unlit)
+    }
+
+    /// A point of the scene in the coordinates of its file.
+    pub fn in_file(&self, point: Vec3) -> DVec3 {
+        camera::in_file(point, self.origin)
+    }
+
+    /// A camera in the coordinates of the file.
+    pub fn file_camera(&self, camera: &Camera) -> FileCamera {
+        FileCamera::of(camera, self.origin)
     }
 
     /// `settings` with what they leave to the scene filled in.

@@ -11,24 +11,33 @@ use std::f32::consts::{PI, TAU};
 /// Lane mask of native width.
 type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
 
+/// Which coordinates a texture is looked up by. Checkers have a defined phase; images must not be mirrored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reading {
+    /// Those that checkers are defined in.
+    Checker,
+    /// Seen from the side that the normal points to, u grows to the right and v upwards.
+    Image,
+}
+
 /// How a point of an object gets its texture coordinates. All of it in the object's own space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mapping {
-    /// u = p·`u`, v = p·`v`: planes, rectangles, disks, flat triangles without coordinates.
+    /// u and v along two axes: planes, rectangles, disks, flat triangles without coordinates.
     Planar {
-        /// First axis.
-        u: Vec3,
-        /// Second axis.
-        v: Vec3,
+        /// Axes of checkers.
+        checker: [Vec3; 2],
+        /// Axes of images.
+        image: [Vec3; 2],
     },
     /// Each face maps like an axis-aligned plane by its dominant normal axis: boxes.
     BoxFaces,
-    /// Longitude / 2π, latitude / π from the south pole.
+    /// Longitude / 2π, which grows to the left for checkers and to the right for images; latitude / π from the south pole.
     Sphere {
         /// Centre.
         center: Vec3,
     },
-    /// Side: angle / 2π, height from the base; caps: planar.
+    /// Side: angle / 2π, height from the base; for images the angle grows to the right with the axis up. Caps: planar.
     Axial {
         /// Centre of the base.
         base: Vec3,
@@ -68,25 +77,48 @@ impl Object {
         position: V3<S::f32s>,
         normal: V3<S::f32s>,
         sides: Mask<S>,
+        reading: Reading,
     ) -> [S::f32s; 2] {
         let p = self.to_object(simd, position);
         match self.mapping {
-            Mapping::Planar { u, v } => planar(simd, p, [u, v]),
+            Mapping::Planar { checker, image } => {
+                planar(simd, p, if reading == Reading::Image { image } else { checker })
+            }
             Mapping::BoxFaces => {
-                let [along_x, along_z] = self.faces(simd, normal);
-                [along_x.select(p.y, p.x), along_z.select(p.y, p.z)]
+                let own = self.to_object_normals(simd, normal);
+                let [along_x, along_z] = faces(simd, own);
+                if reading == Reading::Image {
+                    let [behind_x, behind_y, behind_z] = [own.x, own.y, own.z].map(|n| n.simd_lt(0.0));
+                    let on_x = behind_x.select(p.z, -p.z);
+                    let on_z = behind_z.select(-p.x, p.x);
+                    let on_y = behind_y.select(p.z, -p.z);
+                    [along_x.select(on_x, along_z.select(on_z, p.x)), (along_x | along_z).select(p.y, on_y)]
+                } else {
+                    [along_x.select(p.y, p.x), along_z.select(p.y, p.z)]
+                }
             }
             Mapping::Sphere { center } => {
                 let d = p - V3::splat(simd, center);
                 let across = (d.x * d.x + d.z * d.z).sqrt();
-                [atan2::<S, S::f32s>(d.z, d.x) / TAU + 0.5, atan2::<S, S::f32s>(d.y, across) / PI + 0.5]
+                let east = atan2::<S, S::f32s>(d.z, d.x) / TAU;
+                let u = if reading == Reading::Image { -east } else { east } + 0.5;
+                [u, atan2::<S, S::f32s>(d.y, across) / PI + 0.5]
             }
             Mapping::Axial { base, axis } => {
                 let axes = plane_axes(axis);
                 let from_base = p - V3::splat(simd, base);
                 let [a, b] = planar(simd, from_base, axes);
-                let around = [atan2::<S, S::f32s>(b, a) / TAU + 0.5, from_base.dot(V3::splat(simd, axis))];
-                let caps = planar(simd, p, axes);
+                let mut turned = atan2::<S, S::f32s>(b, a) / TAU;
+                let mut caps = planar(simd, p, axes);
+                if reading == Reading::Image {
+                    if is_left_handed(axes, axis) {
+                        turned = -turned;
+                    }
+                    let [top, base] = [axis, -axis].map(|n| planar(simd, p, image_axes(n)));
+                    let tops = normal_along(simd, self.to_object_normals(simd, normal), axis);
+                    caps = [tops.select(top[0], base[0]), tops.select(top[1], base[1])];
+                }
+                let around = [turned + 0.5, from_base.dot(V3::splat(simd, axis))];
                 [sides.select(around[0], caps[0]), sides.select(around[1], caps[1])]
             }
             Mapping::Vertex => [S::f32s::splat(simd, 0.0); 2],
@@ -101,21 +133,36 @@ impl Object {
         position: V3<S::f32s>,
         normal: V3<S::f32s>,
         sides: Mask<S>,
+        reading: Reading,
     ) -> [V3<S::f32s>; 2] {
         let p = self.to_object(simd, position);
         let zero = S::f32s::splat(simd, 0.0);
         let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| V3::splat(simd, axis));
         let own = match self.mapping {
-            Mapping::Planar { u, v } => [V3::splat(simd, u), V3::splat(simd, v)],
+            Mapping::Planar { checker, image } => {
+                let [u, v] = if reading == Reading::Image { image } else { checker };
+                [V3::splat(simd, u), V3::splat(simd, v)]
+            }
             Mapping::BoxFaces => {
-                let [along_x, along_z] = self.faces(simd, normal);
-                [V3::select(along_x, y, x), V3::select(along_z, y, z)]
+                let own = self.to_object_normals(simd, normal);
+                let [along_x, along_z] = faces(simd, own);
+                if reading == Reading::Image {
+                    let [behind_x, behind_y, behind_z] = [own.x, own.y, own.z].map(|n| n.simd_lt(zero));
+                    let on_x = V3::select(behind_x, z, -z);
+                    let on_z = V3::select(behind_z, -x, x);
+                    let on_y = V3::select(behind_y, z, -z);
+                    let across = V3::select(along_x, on_x, V3::select(along_z, on_z, x));
+                    [across, V3::select(along_x | along_z, y, on_y)]
+                } else {
+                    [V3::select(along_x, y, x), V3::select(along_z, y, z)]
+                }
             }
             Mapping::Sphere { center } => {
                 let d = p - V3::splat(simd, center);
                 let across2 = (d.x * d.x + d.z * d.z).max(f32::MIN_POSITIVE);
                 let across = across2.sqrt();
-                let around = V3::new(-d.z, zero, d.x).scale(S::f32s::splat(simd, 1.0 / TAU) / across2);
+                let east = V3::new(-d.z, zero, d.x).scale(S::f32s::splat(simd, 1.0 / TAU) / across2);
+                let around = if reading == Reading::Image { -east } else { east };
                 let level = V3::new(d.x, zero, d.z).scale(d.y / across);
                 let up = (V3::new(zero, across, zero) - level).scale(S::f32s::splat(simd, 1.0 / PI) / d.dot(d));
                 [around, up]
@@ -125,8 +172,17 @@ impl Object {
                 let [a, b] = planar(simd, p - V3::splat(simd, base), axes);
                 let [along_a, along_b] = axes.map(|axis| V3::splat(simd, axis));
                 let inverse = S::f32s::splat(simd, 1.0 / TAU) / (a * a + b * b).max(f32::MIN_POSITIVE);
-                let around = (along_b.scale(a) - along_a.scale(b)).scale(inverse);
-                [V3::select(sides, around, along_a), V3::select(sides, V3::splat(simd, axis), along_b)]
+                let mut around = (along_b.scale(a) - along_a.scale(b)).scale(inverse);
+                let mut caps = [along_a, along_b];
+                if reading == Reading::Image {
+                    if is_left_handed(axes, axis) {
+                        around = -around;
+                    }
+                    let [top, base] = [axis, -axis].map(|n| image_axes(n).map(|axis| V3::splat(simd, axis)));
+                    let tops = normal_along(simd, self.to_object_normals(simd, normal), axis);
+                    caps = [V3::select(tops, top[0], base[0]), V3::select(tops, top[1], base[1])];
+                }
+                [V3::select(sides, around, caps[0]), V3::select(sides, V3::splat(simd, axis), caps[1])]
             }
             Mapping::Vertex => [V3::all(zero); 2],
         };
@@ -149,15 +205,6 @@ impl Object {
         }
     }
 
-    /// The lanes that face along the object's x axis, and those that face along z; the others face along y.
-    #[inline(always)]
-    fn faces<S: Simd>(&self, simd: S, normal: V3<S::f32s>) -> [Mask<S>; 2] {
-        let normal = self.to_object_normals(simd, normal);
-        let (x, y, z) = (normal.x.abs(), normal.y.abs(), normal.z.abs());
-        let along_z = z.simd_gt(x.max(y));
-        [!along_z & !y.simd_gt(x), along_z]
-    }
-
     /// Normals of the world in the object's own space; their lengths may change.
     #[inline(always)]
     fn to_object_normals<S: Simd>(&self, simd: S, normal: V3<S::f32s>) -> V3<S::f32s> {
@@ -166,6 +213,25 @@ impl Object {
             Some(m) => linear(simd, &m.matrix3.inverse().transpose(), normal),
         }
     }
+}
+
+/// The lanes whose normals in the object's own space face along x, and those that face along z; the others face along y.
+#[inline(always)]
+fn faces<S: Simd>(_: S, normal: V3<S::f32s>) -> [Mask<S>; 2] {
+    let (x, y, z) = (normal.x.abs(), normal.y.abs(), normal.z.abs());
+    let along_z = z.simd_gt(x.max(y));
+    [!along_z & !y.simd_gt(x), along_z]
+}
+
+/// The lanes whose normals lie on the side that `axis` points to.
+#[inline(always)]
+fn normal_along<S: Simd>(simd: S, normal: V3<S::f32s>, axis: Vec3) -> Mask<S> {
+    normal.dot(V3::splat(simd, axis)).simd_gt(0.0)
+}
+
+/// Whether the angle from the first of two axes across `axis` to the second falls to the right, with `axis` up.
+fn is_left_handed([a, b]: [Vec3; 2], axis: Vec3) -> bool {
+    a.cross(b).dot(axis) < 0.0
 }
 
 /// The same linear map of every lane.
@@ -189,6 +255,16 @@ pub fn plane_axes(n: Vec3) -> [Vec3; 2] {
     }
     let a = Vec3::Y.cross(n).normalize();
     [a, n.cross(a)]
+}
+
+/// The axes along which an image lies on a plane of unit normal `n`, seen from the side that it points to: to the right
+/// and up. On what lies flat, x is to the right.
+pub fn image_axes(n: Vec3) -> [Vec3; 2] {
+    if n.x == 0.0 && n.z == 0.0 {
+        return [Vec3::X, if n.y > 0.0 { Vec3::NEG_Z } else { Vec3::Z }];
+    }
+    let right = Vec3::Y.cross(n).normalize();
+    [right, n.cross(right)]
 }
 
 /// The two coordinate axes other than the one that `n` lies nearest to, in x, y, z order.

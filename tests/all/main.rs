@@ -11,6 +11,7 @@ mod corpus;
 mod crowds;
 mod determinism;
 mod exactness;
+mod far_coordinates;
 mod flat_mirrors;
 #[path = "../common/flips.rs"]
 mod flips;
@@ -19,6 +20,7 @@ mod gltf;
 mod imports;
 mod instancing;
 mod interpolation;
+mod lettering;
 mod maps;
 mod our_scenes;
 mod overlay;

@@ -32,6 +32,7 @@ fn scene() -> Scene {
         generation: 1,
         geometry: Arc::new(Geometry::build(Vec::new())),
         build_ms: 0.0,
+        origin: glam::DVec3::ZERO,
         objects: Vec::new().into(),
         materials: vec![Material::default_phong()],
         textures: Vec::new(),

@@ -166,8 +166,8 @@ fn texture_coordinates_follow_the_shape() {
     );
     let mappings: Vec<Mapping> = scene.objects.iter().map(|o| o.mapping).collect();
     let expected = [
-        Mapping::Planar { u: Vec3::X, v: Vec3::Z },
-        Mapping::Planar { u: Vec3::X, v: Vec3::Y },
+        Mapping::Planar { checker: [Vec3::X, Vec3::Z], image: [Vec3::X, Vec3::Z] },
+        Mapping::Planar { checker: [Vec3::X, Vec3::Y], image: [Vec3::X, Vec3::Y] },
         Mapping::Vertex,
         Mapping::BoxFaces,
         Mapping::Axial { base: Vec3::Y, axis: Vec3::Y },

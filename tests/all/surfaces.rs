@@ -10,24 +10,25 @@ use raywalk::render::Film;
 use raywalk::scene::build::SceneBuilder;
 use raywalk::scene::desc::problem::{At, Warnings};
 use raywalk::scene::desc::{
-    ImageDesc, ImageSource, MaterialDesc, MeshDesc, NameRef, ObjectDesc, SceneDesc, ShapeDesc, TextureDesc, TextureKind,
+    CameraDesc, ImageDesc, ImageSource, MaterialDesc, MeshDesc, NameRef, ObjectDesc, SceneDesc, ShapeDesc, TextureDesc,
+    TextureKind,
 };
 use raywalk::scene::files::Files;
 use raywalk::scene::light::{Falloff, LightKind};
 use raywalk::scene::material::{Alpha, ColorSource, Lookup, Model, Relief, Scaled};
 use raywalk::scene::texture::{Blending, Sampler, Wrap};
-use raywalk::scene::{Camera, Light, LoadOptions, NamedCamera, Scene};
-use raywalk::settings::Settings;
+use raywalk::scene::{Camera, Light, LoadOptions, Material, Scene};
+use raywalk::settings::{Settings, Supersample, ToneMap};
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
 
-fn name(text: &str) -> NameRef {
+pub(super) fn name(text: &str) -> NameRef {
     NameRef { name: text.to_owned(), at: At(0) }
 }
 
 /// A texture of the given texels, row by row from the top.
-fn texture(called: &str, width: u32, texels: &[[u8; 4]], sampler: Sampler) -> TextureDesc {
+pub(super) fn texture(called: &str, width: u32, texels: &[[u8; 4]], sampler: Sampler) -> TextureDesc {
     let image = RgbaImage::from_raw(width, texels.len() as u32 / width, texels.concat()).unwrap();
     let mut bytes = Cursor::new(Vec::new());
     image.write_to(&mut bytes, ImageFormat::Png).unwrap();
@@ -40,19 +41,19 @@ fn noise(random: &mut Random, count: usize) -> Vec<[u8; 4]> {
     (0..count).map(|_| [(); 4].map(|()| random.below(256) as u8)).collect()
 }
 
-fn material(called: &str) -> MaterialDesc {
+pub(super) fn material(called: &str) -> MaterialDesc {
     MaterialDesc { name: called.to_owned(), ..MaterialDesc::default_phong() }
 }
 
-fn lookup(texture: &str) -> Lookup<NameRef> {
+pub(super) fn lookup(texture: &str) -> Lookup<NameRef> {
     Lookup::new(name(texture))
 }
 
-fn scaled(texture: &str, scale: f32) -> Option<Scaled<NameRef>> {
+pub(super) fn scaled(texture: &str, scale: f32) -> Option<Scaled<NameRef>> {
     Some(Scaled { lookup: lookup(texture), scale })
 }
 
-fn object(kind: &'static str, material: &str, shape: ShapeDesc) -> ObjectDesc {
+pub(super) fn object(kind: &'static str, material: &str, shape: ShapeDesc) -> ObjectDesc {
     ObjectDesc { at: At(0), kind, name: None, material: Some(name(material)), transform: None, shape }
 }
 
@@ -67,18 +68,18 @@ fn square() -> MeshDesc {
     }
 }
 
-fn built(scene: SceneDesc) -> Scene {
+pub(super) fn built(scene: SceneDesc) -> Scene {
     let options = LoadOptions::default();
     let mut builder = SceneBuilder::new(Path::new("surfaces"), "made", Files::embedded(&[], &options.limits), &options);
     builder.add(scene, &mut Warnings::default()).unwrap();
     builder.finish().expect("nobody cancels")
 }
 
-fn light(position: Vec3) -> Light {
+pub(super) fn light(position: DVec3) -> Light<DVec3> {
     Light { name: None, kind: LightKind::Point { position }, color: Vec3::ONE, falloff: Falloff::None }
 }
 
-fn camera(eye: Vec3, look_at: Vec3) -> Camera {
+pub(super) fn camera(eye: Vec3, look_at: Vec3) -> Camera {
     Camera { eye, look_at, up: Vec3::Y, fov: 50.0, near: 0.0, far: f32::INFINITY }
 }
 
@@ -169,7 +170,7 @@ fn crowd(seed: u64) -> (Scene, Vec<Camera>) {
         textures,
         materials,
         objects,
-        lights: vec![light(Vec3::new(2.0, 6.0, 3.0)), light(Vec3::new(-5.0, 3.0, -1.0))],
+        lights: vec![light(DVec3::new(2.0, 6.0, 3.0)), light(DVec3::new(-5.0, 3.0, -1.0))],
         ..SceneDesc::default()
     };
     let cameras = (0..2).map(|_| camera(random.point(5.0).as_vec3(), random.point(1.0).as_vec3())).collect();
@@ -196,8 +197,14 @@ fn before_a_wall(textures: Vec<TextureDesc>, square_of: MaterialDesc, mesh: Mesh
         textures,
         materials: vec![square_of, wall],
         objects: vec![object("mesh", &called, ShapeDesc::Mesh(Arc::new(mesh))), object("plane", "wall", plane)],
-        lights: vec![light(Vec3::new(0.0, 0.0, 3.0))],
-        cameras: vec![NamedCamera { name: "front".to_owned(), camera: camera(Vec3::Z * 3.0, Vec3::ZERO) }],
+        lights: vec![light(DVec3::new(0.0, 0.0, 3.0))],
+        cameras: vec![CameraDesc {
+            at: At(0),
+            name: "front".to_owned(),
+            eye: DVec3::Z * 3.0,
+            look_at: DVec3::ZERO,
+            camera: camera(Vec3::Z * 3.0, Vec3::ZERO),
+        }],
         ..SceneDesc::default()
     })
 }
@@ -212,7 +219,7 @@ fn quarter(film: &Film, [right, up]: [i32; 2]) -> Vec3 {
     film.color(at(right), at(-up)).into()
 }
 
-const NEAREST: Sampler = Sampler {
+pub(super) const NEAREST: Sampler = Sampler {
     wrap: [Wrap::Repeat; 2],
     magnification: Blending::Nearest,
     minification: Blending::Nearest,
@@ -336,4 +343,43 @@ fn far_textures_are_means_of_near_ones() {
     };
     assert!(contrast(&film(Sampler::default())) < 0.05);
     assert!(contrast(&film(NEAREST)) > 0.9);
+}
+
+#[test]
+fn what_is_unlit_keeps_its_colour_under_the_tone_curve_beside_what_is_lit() {
+    // A lit wall, so that the curve is applied; before it an unlit square of four colours.
+    let colors = [[255, 0, 0, 255], [255, 255, 255, 255], [200, 120, 40, 255], [40, 40, 40, 255]];
+    let color = ColorSource::textured(lookup("colors"));
+    let square_of = MaterialDesc { unlit: true, color, ..material("plate") };
+    let mut scene = before_a_wall(vec![texture("colors", 2, &colors, NEAREST)], square_of, square());
+    scene.materials[1].unlit = false;
+    assert!(!scene.is_all_unlit());
+    let exposure = raywalk::settings::Exposure::Scene;
+    for tone_map in [ToneMap::Neutral, ToneMap::None] {
+        for supersample in [Supersample::Off, Supersample::Grid { side: 2 }] {
+            let settings = Settings { exposure, tone_map: Some(tone_map), supersample, ..Settings::exact() };
+            let film = render(&scene, &scene.cameras[0].camera, &settings, (64, 64));
+            for (color, [right, up]) in colors.iter().zip([[-1, 1], [1, 1], [-1, -1], [1, -1]]) {
+                let at = ((32 - up * 10) * 64 + 32 + right * 10) as usize * 4;
+                let shown = &film.rgba()[at..at + 3];
+                let is_near = shown.iter().zip(color).all(|(shown, color)| shown.abs_diff(*color) <= 2);
+                assert!(is_near, "{tone_map:?}: {color:?} is shown as {shown:?}");
+            }
+        }
+    }
+    let wrong = wrong_pixels("plate", &scene, &[scene.cameras[0].camera]);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn half_of_an_unlit_colour_is_half_of_it_under_the_tone_curve() {
+    let white = [[255; 4]];
+    let plate = MaterialDesc { unlit: true, alpha: Alpha::Blend, opacity: 0.5, ..material("plate") };
+    let mut scene = before_a_wall(vec![texture("white", 1, &white, NEAREST)], plate, square());
+    let black = Model::Phong { ambient: Vec3::ZERO, diffuse: Vec3::ZERO, specular: Vec3::ZERO, shininess: 1.0 };
+    scene.materials[1] = Material { model: black, ..Material::default_phong() };
+    let settings = Settings { tone_map: Some(ToneMap::Neutral), ..Settings::exact() };
+    let film = render(&scene, &scene.cameras[0].camera, &settings, (64, 64));
+    let shown = film.rgba()[(20 * 64 + 20) * 4];
+    assert!(shown.abs_diff(188) <= 4, "{shown}");
 }

@@ -52,7 +52,7 @@ fn take_entries(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Camera;
+    use crate::scene::{Camera, FileCamera};
     use std::path::Path;
 
     fn with_settings(settings: &[(&str, &str)]) -> Config {
@@ -73,10 +73,10 @@ mod tests {
     fn bookmarks_and_recent_files_of_both_windows_stay() {
         let file = Some(Path::new("/room.json"));
         let mut before = Config::default();
-        before.bookmarks.of_mut(file).store(1, Camera::default());
+        before.bookmarks.of_mut(file).store(1, Camera::default().into());
         before.recent.opened(Path::new("/room.json"));
         let (mut ours, mut theirs) = (before.clone(), before.clone());
-        let mine = Camera { fov: 20.0, ..Camera::default() };
+        let mine = FileCamera::from(Camera { fov: 20.0, ..Camera::default() });
         ours.bookmarks.of_mut(file).store(2, mine);
         ours.recent.opened(Path::new("/ours.json"));
         ours.panel = false;
@@ -87,7 +87,7 @@ mod tests {
         theirs.others.insert("later".to_owned(), true.into());
         let both = theirs.with_changes(&before, &ours);
         let room = both.bookmarks.of(file);
-        assert_eq!([1, 2, 3, 4].map(|n| room.get(n)), [Some(Camera::default()), Some(mine), Some(mine), None]);
+        assert_eq!([1, 2, 3, 4].map(|n| room.get(n)), [Some(Camera::default().into()), Some(mine), Some(mine), None]);
         assert_eq!(both.bookmarks.of(None).get(1), Some(mine));
         assert_eq!(both.recent.files(), ["/ours.json", "/theirs.json", "/room.json"].map(Path::new));
         assert_eq!((both.panel, both.ui_scale), (false, 2.0));

@@ -157,9 +157,9 @@ mod tests {
             Store::open(path.clone()).1
         };
         let (mut one, mut other) = (open(), open());
-        one.config.bookmarks.of_mut(None).store(1, Camera::default());
+        one.config.bookmarks.of_mut(None).store(1, Camera::default().into());
         save(&mut one);
-        other.config.bookmarks.of_mut(None).store(2, Camera::default());
+        other.config.bookmarks.of_mut(None).store(2, Camera::default().into());
         other.config.ui_scale = 2.0;
         save(&mut other);
         one.config.panel = false;

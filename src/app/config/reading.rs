@@ -129,7 +129,7 @@ fn read_window(map: Option<Map<String, Value>>, faults: &mut Faults) -> Option<W
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Camera;
+    use crate::scene::{Camera, FileCamera};
     use std::path::Path;
 
     fn read(text: &str) -> (Config, Option<String>) {
@@ -140,7 +140,8 @@ mod tests {
 
     #[test]
     fn one_bad_entry_costs_nothing_but_itself() {
-        let camera = Camera::default().to_json();
+        let usual = FileCamera::from(Camera::default());
+        let camera = usual.to_json();
         let text = format!(
             r#"{{ "ui_scale": 2, "panel": 7, "settings": {{ "stride": "4", "fill": 3 }},
             "window": {{ "position": [1, "x"], "size": [900, 500], "maximized": true }},
@@ -155,9 +156,9 @@ mod tests {
         assert_eq!(config.window, Some(window));
         assert_eq!(config.recent.files(), [Path::new("/a.json")]);
         assert!(config.others.contains_key("later"));
-        assert_eq!(config.bookmarks.of(Some(Path::new("/short.json"))).get(1), Some(Camera::default()));
+        assert_eq!(config.bookmarks.of(Some(Path::new("/short.json"))).get(1), Some(usual));
         let odd = config.bookmarks.of(Some(Path::new("/odd.json")));
-        assert_eq!((odd.get(1), odd.get(2), odd.get(3)), (None, Some(Camera::default()), None));
+        assert_eq!((odd.get(1), odd.get(2), odd.get(3)), (None, Some(usual), None));
         let faults = faults.expect("there are some");
         assert!(faults.contains("panel") && faults.ends_with("more") && !faults.contains('\n'), "{faults}");
     }
@@ -188,7 +189,7 @@ mod tests {
         let mut config = Config { ui_scale: 1.5, sensitivity: Some(0.2), ..Config::default() };
         config.recent.opened(Path::new("/scenes/my room.json"));
         let far = Camera { eye: glam::Vec3::new(0.1, 1.6, -1e-7), ..Camera::default() };
-        config.bookmarks.of_mut(Some(Path::new("/a.json"))).store(3, far);
+        config.bookmarks.of_mut(Some(Path::new("/a.json"))).store(3, far.into());
         for config in [config, Config::default()] {
             let text = serde_json::to_string_pretty(&config).expect("plain data");
             assert_eq!(read(&text), (config, None));

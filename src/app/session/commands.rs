@@ -7,7 +7,7 @@ use crate::app::journey::Start;
 use crate::app::overlay::Change;
 use crate::app::scenes::Wish;
 use crate::app::{desktop, methods};
-use crate::scene::{self, Camera};
+use crate::scene::{self, Camera, FileCamera};
 use std::time::Instant;
 
 /// A step of the size of panel and text.
@@ -45,15 +45,19 @@ impl Session {
             Command::ReduceUi => self.scale_ui(self.ui_scale / UI_STEP),
             Command::ResetUi => self.scale_ui(1.0),
             Command::StoreBookmark(number) => {
-                self.keeper.config.bookmarks.of_mut(self.scenes.place()).store(number, self.walker.camera());
+                let camera = self.file_camera();
+                self.keeper.config.bookmarks.of_mut(self.scenes.place()).store(number, camera);
                 self.notices.tell(now, format!("Bookmark {number} set: key {number} comes back here"));
             }
             Command::GoToBookmark(number) => match self.keeper.config.bookmarks.of(self.scenes.place()).get(number) {
-                Some(camera) => self.go_to(camera),
+                Some(camera) => match camera.camera(self.scene.origin) {
+                    Some(camera) => self.go_to(camera),
+                    None => self.notices.warn(now, format!("Bookmark {number} is too far away to be seen from")),
+                },
                 None => self.notices.warn(now, format!("There is no bookmark {number}: Ctrl+{number} sets it")),
             },
             Command::CopyCamera => {
-                self.layer.copy(self.walker.camera().to_json());
+                self.layer.copy(self.file_camera().to_json());
                 self.notices.tell(now, "Camera copied as JSON");
             }
             Command::PasteCamera => self.paste(now),
@@ -67,6 +71,11 @@ impl Session {
         self.repaint(now);
     }
 
+    /// The camera of this moment in the coordinates of the scene's file.
+    fn file_camera(&self) -> FileCamera {
+        self.scene.file_camera(&self.walker.camera())
+    }
+
     pub(super) fn go_to(&mut self, camera: Camera) {
         self.journey.stop_replay();
         self.walker.go_to(camera);
@@ -75,7 +84,7 @@ impl Session {
     /// Goes to the camera on the clipboard.
     pub(super) fn paste(&mut self, now: Instant) {
         let text = self.layer.pasted().filter(|text| !text.trim().is_empty());
-        match text.as_deref().map(|text| scene::read_camera("clipboard", text)) {
+        match text.as_deref().map(|text| scene::read_camera("clipboard", text, self.scene.origin)) {
             None => self.notices.warn(now, "There is no text on the clipboard to paste a camera from"),
             Some(Err(error)) => self.notices.warn(now, format!("What was pasted is no camera: {error}")),
             Some(Ok(camera)) => {
@@ -99,8 +108,8 @@ impl Session {
 
     /// The same; `how_to` is what to say of a replay.
     pub(super) fn end_recording(&mut self, now: Instant, how_to: String) -> bool {
-        let (camera, size) = (self.walker.camera(), self.walker.surroundings());
-        let errand = self.journey.finish(now, camera, self.path_folders(), size, how_to);
+        let (camera, place) = (self.walker.camera(), (self.walker.surroundings(), self.scene.origin));
+        let errand = self.journey.finish(now, camera, self.path_folders(), place, how_to);
         let was_recording = errand.is_some();
         errand.into_iter().for_each(|errand| self.errands.run(errand));
         was_recording
@@ -121,7 +130,7 @@ impl Session {
     /// Follows a recording and a replay; says when to be called again.
     pub(super) fn travel(&mut self, now: Instant) -> Option<Instant> {
         let base = self.walker.camera();
-        if let Some(camera) = self.journey.camera(now, &base) {
+        if let Some(camera) = self.journey.camera(now, &base, self.scene.origin) {
             self.walker.go_to(camera);
         }
         if self.journey.see(now, self.walker.camera()) {

@@ -211,8 +211,8 @@ impl Session {
         if let Some(shot) = self.camerawork.give_up() {
             self.write(shot);
         }
-        let size = self.walker.surroundings();
-        let recorded = self.journey.finish(Instant::now(), camera, self.path_folders(), size, String::new());
+        let place = (self.walker.surroundings(), self.scene.origin);
+        let recorded = self.journey.finish(Instant::now(), camera, self.path_folders(), place, String::new());
         recorded.into_iter().for_each(|errand| self.errands.run(errand));
         let (mut notes, mut warnings) = (Vec::new(), Vec::new());
         for news in self.errands.finish() {

@@ -57,6 +57,13 @@ impl Session {
     pub(super) fn replace_scene(&mut self, scene: Arc<Scene>) {
         let home = self.walker.home();
         let named = self.scene.cameras.iter().position(|named| named.camera == home);
+        if scene.origin != self.scene.origin {
+            // What moved is the place of the numbers, not the walker.
+            if self.end_recording(Instant::now(), String::new()) {
+                self.notices.tell(Instant::now(), "The recording has ended: the scene has moved");
+            }
+            self.walker.shift(self.scene.origin - scene.origin);
+        }
         if let Some(moved) = named.and_then(|index| scene.cameras.get(index)) {
             self.walker.set_home(moved.camera);
         }

@@ -136,6 +136,17 @@ impl Walker {
         self.home = home;
     }
 
+    /// Stays where they are in a scene whose numbers have moved `by` so much.
+    pub fn shift(&mut self, by: DVec3) {
+        let shifted = |camera: Camera| {
+            let [eye, look_at] = [camera.eye, camera.look_at].map(|point| (point.as_dvec3() + by).as_vec3());
+            Camera { eye, look_at, ..camera }
+        };
+        (self.home, self.stance) = (shifted(self.home), shifted(self.stance));
+        self.pose.eye += by;
+        self.lose_footing();
+    }
+
     /// Goes to `camera` and takes its field of view. Speed stays. On foot, one falls from there at the next step only.
     pub fn go_to(&mut self, camera: Camera) {
         self.lose_footing();

@@ -11,6 +11,7 @@ mod interior;
 mod mapping;
 mod model;
 mod object;
+mod origin;
 mod parts;
 mod placement;
 pub mod probe;
@@ -21,7 +22,9 @@ pub use sharing::Instancing;
 
 use super::desc::map::shortened;
 use super::desc::problem::{At, Outcome, Problem, Warnings};
-use super::desc::{ImageDesc, MaterialDesc, NameRef, ObjectDesc, SceneDesc, TextureDesc, TextureKind, hint};
+use super::desc::{
+    CameraDesc, ImageDesc, MaterialDesc, NameRef, ObjectDesc, SceneDesc, TextureDesc, TextureKind, hint,
+};
 use super::error::Warning;
 use super::files::{FileError, Files};
 use super::format::LoadOptions;
@@ -29,13 +32,14 @@ use super::limits::{Limits, exceeded};
 use super::material::{Alpha, Encoding, Model};
 use super::texture::ImageTexture;
 use super::{Light, Material, NamedCamera, Object, Progress, RenderDefaults, Scene, Texture, next_generation};
-use crate::geometry::{Geometry, Part};
+use crate::geometry::{Aabb, Geometry, Part};
 use crate::settings::Exposure;
 use allowance::Allowance;
-use glam::Vec3;
+use glam::{DAffine3, DVec3, Vec3};
 use holes::HoleMaps;
 use image::ImageStore;
 use model::{Contents, Models};
+use origin::far_origin;
 use parts::TOO_MANY_INDICES;
 use placement::Placement;
 pub(super) use probe::Probe;
@@ -74,6 +78,10 @@ pub struct SceneBuilder {
     parts: Vec<Part>,
     sharing: Sharing,
     objects: Vec<Object>,
+    /// The place of the file that is at the origin of the scene.
+    origin: DVec3,
+    /// Bounds of what is too small to be seen where it lies.
+    lost: Aabb,
     materials: Vec<Material>,
     /// The material of objects that name none, once there is one.
     default_material: Option<u32>,
@@ -103,6 +111,8 @@ impl SceneBuilder {
             holes: HoleMaps::default(),
             parts: Vec::new(),
             objects: Vec::new(),
+            origin: DVec3::ZERO,
+            lost: Aabb::EMPTY,
             materials: Vec::new(),
             default_material: None,
             textures: Vec::new(),
@@ -158,11 +168,48 @@ impl SceneBuilder {
         }
         self.render = render;
         self.progress.begin("placing objects", 0);
-        self.cameras.extend(cameras);
-        self.survey(&contents)?;
+        let before = (self.materials.len(), self.textures.len(), self.warnings.len());
+        let mut odd = Warnings::default();
+        let mut placed = self.place(&contents, &Placement::WORLD, &mut odd);
+        // What does not work so far out, or is odd there, may be as it should be elsewhere.
+        if let Some(origin) = far_origin(finite_bounds(&self.objects).union(self.lost)) {
+            self.start_over(before);
+            self.origin = origin;
+            odd = Warnings::default();
+            let moved = Placement::WORLD.within(&DAffine3::from_translation(-origin), At(0))?;
+            placed = self.place(&contents, &moved, &mut odd);
+        }
+        warnings.append(odd);
+        placed?;
+        for camera in cameras {
+            let CameraDesc { ref name, .. } = camera;
+            self.cameras.push(NamedCamera { name: name.clone(), camera: camera.place(self.origin)? });
+        }
+        Ok(())
+    }
+
+    /// Adds the lights and objects of the scene, `world` being its place.
+    fn place(&mut self, contents: &Contents, world: &Placement, warnings: &mut Warnings) -> Outcome<()> {
+        self.survey(contents)?;
         self.take_lights(contents.lights.len(), At(0))?;
-        self.lights.extend(contents.lights);
-        self.add_objects(&contents.objects, &Placement::WORLD, &contents.materials, warnings)
+        let origin = self.origin;
+        let moved = |light: &Light<DVec3>| light.moved(|position| (position - origin).as_vec3(), |along| along);
+        self.lights.extend(contents.lights.iter().map(moved));
+        self.add_objects(&contents.objects, world, &contents.materials, warnings)
+    }
+
+    /// Forgets all that was placed, and all but the first so many materials, textures and warnings: those of models.
+    fn start_over(&mut self, (materials, textures, warnings): (usize, usize, usize)) {
+        self.materials.truncate(materials);
+        self.textures.truncate(textures);
+        self.warnings.truncate(warnings);
+        (self.default_material, self.lost) = (None, Aabb::EMPTY);
+        self.objects.clear();
+        self.parts.clear();
+        self.lights.clear();
+        self.sharing.start_over();
+        self.models.start_over();
+        self.holes = HoleMaps::default();
     }
 
     /// Whether there may be `count` lights more.
@@ -275,6 +322,7 @@ impl SceneBuilder {
             geometry: Arc::new(geometry),
             build_ms,
             objects: self.objects.into(),
+            origin: self.origin,
             materials: self.materials,
             textures: self.textures,
             lights: self.lights,

@@ -27,7 +27,7 @@ const SCENE: usize = 0;
 #[derive(Debug)]
 pub struct Contents {
     pub objects: Vec<ObjectDesc>,
-    pub lights: Vec<Light>,
+    pub lights: Vec<Light<DVec3>>,
     pub materials: Names,
 }
 
@@ -82,6 +82,12 @@ impl Models {
         models.file(path, || shown.to_owned());
         models.files[SCENE].is_open = true;
         models
+    }
+
+    /// Forgets all files but the scene's own.
+    pub fn start_over(&mut self) {
+        let scene = self.files.swap_remove(SCENE);
+        *self = Self::of(scene.path, &scene.shown);
     }
 
     /// Gives back the memory of what was read.
@@ -226,7 +232,7 @@ impl SceneBuilder {
         Err(Problem::new(file.at, problem.message))
     }
 
-    fn add_lights(&mut self, lights: &[Light], placement: &Placement, at: At) -> Outcome<()> {
+    fn add_lights(&mut self, lights: &[Light<DVec3>], placement: &Placement, at: At) -> Outcome<()> {
         self.count_nodes(lights.len(), at)?;
         self.take_lights(lights.len(), at)?;
         for light in lights {
@@ -242,18 +248,11 @@ fn unreadable(file: &NameRef, error: &FileError) -> Problem {
 }
 
 /// A light in the world; `None` when it is too far away.
-fn placed(light: &Light, placement: &Placement) -> Option<Light> {
-    let point = |p: Vec3| placement.point(p.as_dvec3()).as_vec3();
+fn placed(light: &Light<DVec3>, placement: &Placement) -> Option<Light> {
     let along = |d: Vec3| (placement.point(d.as_dvec3()) - placement.point(DVec3::ZERO)).normalize_or_zero().as_vec3();
-    let kind = match light.kind {
-        LightKind::Point { position } => LightKind::Point { position: point(position) },
-        LightKind::Directional { direction } => LightKind::Directional { direction: along(direction) },
-        LightKind::Spot { position, direction, cos_inner, cos_outer } => {
-            LightKind::Spot { position: point(position), direction: along(direction), cos_inner, cos_outer }
-        }
-    };
-    match kind {
+    let light = light.moved(|position| placement.point(position).as_vec3(), along);
+    match light.kind {
         LightKind::Point { position } | LightKind::Spot { position, .. } if !position.is_finite() => None,
-        _ => Some(Light { kind, ..light.clone() }),
+        _ => Some(light),
     }
 }

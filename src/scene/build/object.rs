@@ -1,17 +1,17 @@
 //! Objects: the tree of the file flattened into world-space shapes.
 
 use super::holes::Cut;
-use super::mapping::mapping;
+use super::mapping::{anchored, mapping};
 use super::parts::{Corners, ObjectParts};
-use super::placement::Placement;
+use super::placement::{Placement, narrow};
 use super::sharing::Sharing;
 use super::{Names, SceneBuilder, index};
 use crate::geometry::Shape;
-use crate::scene::Object;
 use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
 use crate::scene::desc::{MeshDesc, ObjectDesc, ShapeDesc};
 use crate::scene::files::CANCELLED;
 use crate::scene::limits::exceeded;
+use crate::scene::{Object, Texture};
 use glam::{DVec3, Vec3, Vec4};
 use std::sync::Arc;
 
@@ -70,7 +70,8 @@ impl SceneBuilder {
         };
         let is_thin = self.materials[material as usize].is_thin();
         let elsewhere = self.sharing.totals();
-        let mut parts = ObjectParts::new(&mut self.parts, elsewhere, &self.limits, id, object.at);
+        let room = (&mut self.parts, &mut self.lost);
+        let mut parts = ObjectParts::new(room, elsewhere, &self.limits, id, object.at);
         let is_shared = match &object.shape {
             ShapeDesc::Mesh(mesh) if cut.is_none() => {
                 let wanted = || !self.progress.is_cancelled();
@@ -85,16 +86,34 @@ impl SceneBuilder {
         if !is_shared {
             add_shape(object, placement, cut.as_ref(), &mut parts)?;
         }
+        let bounds = parts.finish(warnings);
+        let (mapping, to_object) = match placement.world_to_object() {
+            Some(far) if self.origin != DVec3::ZERO => {
+                let (mapping, near) = anchored(&object.shape, far, self.texture_period(material));
+                (mapping, Some(near))
+            }
+            to_object => (mapping(&object.shape), to_object),
+        };
         self.objects.push(Object {
             name: object.name.clone(),
             kind: object.kind,
             material,
             body: is_body(object) && !is_thin,
-            mapping: mapping(&object.shape),
-            world_to_object: placement.world_to_object(),
-            bounds: parts.finish(warnings),
+            mapping,
+            world_to_object: to_object.map(narrow),
+            bounds,
         });
         Ok(())
+    }
+
+    /// The length after which the textures of a material repeat; the largest where they do not agree.
+    fn texture_period(&self, material: u32) -> f64 {
+        let lookups = self.materials[material as usize].lookups();
+        let sizes = lookups.map(|lookup| match &self.textures[lookup.texture as usize] {
+            Texture::Checker { size, .. } => 2.0 * f64::from(*size),
+            Texture::Image(image) => f64::from(image.size),
+        });
+        sizes.fold(0.0, f64::max)
     }
 }
 
@@ -111,6 +130,10 @@ fn share(
     parts.check(to_store as u64, mesh.triangles.len() as u64)?;
     let transform = *placement.transform();
     let survey = sharing.survey(mesh, &transform);
+    if let Some(survey) = survey.filter(|survey| survey.dropped > 0) {
+        let corner = mesh.corners(survey.first_dropped)[0];
+        parts.lose(transform.point(mesh.vertices[corner]).as_vec3());
+    }
     parts.take(survey)?;
     let is_placed = survey.is_some_and(|survey| sharing.place(mesh, object, transform, &survey, wanted));
     if !is_placed {
@@ -155,7 +178,7 @@ fn add_shape(object: &ObjectDesc, placement: &Placement, cut: Option<&Cut>, part
             let radii = [scale(*radius)?, scale(*radius_top)?];
             add_cone([placement.point(*base), placement.point(*top)], radii, *capped, object.at, parts)
         }
-        ShapeDesc::Box { min, max } => add_box(*min, *max, placement, parts),
+        ShapeDesc::Box { min, max } => add_box(*min, *max, placement, object.at, parts),
         ShapeDesc::Rectangle { corner, edge_u, edge_v } => {
             let (u, v) = (*corner + *edge_u, *corner + *edge_v);
             add_quad(0, [*corner, u, u + *edge_v, v], placement, parts)
@@ -188,6 +211,7 @@ fn add_cone(ends: [DVec3; 2], radii: [f32; 2], capped: bool, at: At, parts: &mut
     let [radius_base, radius_top] = radii;
     not_zero(radius_base.max(radius_top), at)?;
     if base == top {
+        parts.lose(base);
         return Err(Problem::new(at, "in the world, base and top round to the same point; make it longer"));
     }
     parts.push(SIDE, Shape::Cone { base, top, radius_base, radius_top })?;
@@ -205,7 +229,13 @@ fn add_cone(ends: [DVec3; 2], radii: [f32; 2], capped: bool, at: At, parts: &mut
 }
 
 /// Faces 0 to 5 are at the least x, greatest x, least y, greatest y, least z, greatest z; all wind outward.
-fn add_box(min: DVec3, max: DVec3, placement: &Placement, parts: &mut ObjectParts) -> Outcome<()> {
+fn add_box(min: DVec3, max: DVec3, placement: &Placement, at: At, parts: &mut ObjectParts) -> Outcome<()> {
+    let corner = placement.point(min).as_vec3();
+    let ends = DVec3::AXES.map(|axis| placement.point(min + (max - min) * axis).as_vec3());
+    if ends.contains(&corner) {
+        parts.lose(corner);
+        return Err(Problem::new(at, "in the world, two faces round to the same plane; make it larger"));
+    }
     for axis in 0..3 {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         for (side, level) in [(0, min[axis]), (1, max[axis])] {

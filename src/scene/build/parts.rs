@@ -39,6 +39,8 @@ pub const TOO_MANY_INDICES: &str = "with every mesh as often as it is placed, mo
 /// Collects the parts of one object, in ascending order of their primitive, and what all of them share.
 pub struct ObjectParts<'a> {
     parts: &'a mut Vec<Part>,
+    /// Bounds of what was left out.
+    lost: &'a mut Aabb,
     /// What instances take.
     elsewhere: Totals,
     limits: &'a Limits,
@@ -53,8 +55,19 @@ pub struct ObjectParts<'a> {
 
 impl<'a> ObjectParts<'a> {
     /// No parts yet of the object that stands at `at`.
-    pub fn new(parts: &'a mut Vec<Part>, elsewhere: Totals, limits: &'a Limits, object: u32, at: At) -> Self {
-        Self { parts, elsewhere, limits, object, at, bounds: Aabb::EMPTY, dropped: 0, first_dropped: 0 }
+    pub fn new(
+        (parts, lost): (&'a mut Vec<Part>, &'a mut Aabb),
+        elsewhere: Totals,
+        limits: &'a Limits,
+        object: u32,
+        at: At,
+    ) -> Self {
+        Self { parts, lost, elsewhere, limits, object, at, bounds: Aabb::EMPTY, dropped: 0, first_dropped: 0 }
+    }
+
+    /// Notes where something lies that is left out.
+    pub fn lose(&mut self, point: Vec3) {
+        *self.lost = self.lost.union(Aabb::from_points([point]));
     }
 
     /// Makes room for `count` more parts at once.
@@ -98,6 +111,7 @@ impl<'a> ObjectParts<'a> {
             self.first_dropped = primitive;
         }
         self.dropped += 1;
+        self.lose(corners[0]);
         false
     }
 

@@ -57,10 +57,14 @@ impl Placement {
     }
 
     /// From the world to the object's own space; `None` where they are the same.
-    pub fn world_to_object(&self) -> Option<Affine3A> {
-        let narrow = |m: DAffine3| Affine3A::from_mat3_translation(m.matrix3.as_mat3(), m.translation.as_vec3());
-        (!self.0.is_identity()).then(|| narrow(self.0.matrix().inverse()))
+    pub fn world_to_object(&self) -> Option<DAffine3> {
+        (!self.0.is_identity()).then(|| self.0.matrix().inverse())
     }
+}
+
+/// The same map in single precision.
+pub fn narrow(m: DAffine3) -> Affine3A {
+    Affine3A::from_mat3_translation(m.matrix3.as_mat3(), m.translation.as_vec3())
 }
 
 #[cfg(test)]

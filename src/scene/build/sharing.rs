@@ -119,6 +119,11 @@ impl Sharing {
         Self { instancing, ..Self::default() }
     }
 
+    /// Forgets everything but when meshes are shared.
+    pub fn start_over(&mut self) {
+        *self = Self::new(self.instancing);
+    }
+
     /// Decides which meshes of a file are shared; the file is placed `times` times.
     pub fn decide(&mut self, census: &Census, times: u64) {
         let saving = |mesh: &Mesh, count: u64| {

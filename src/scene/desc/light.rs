@@ -10,17 +10,17 @@ use super::{Context, hint};
 use crate::scene::Light;
 use crate::scene::black_body::{self, TEMPERATURES};
 use crate::scene::light::{Falloff, LightKind};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// glTF's default half-angle where the darkness around a spot starts.
 const OUTER_ANGLE: f32 = 45.0;
 
 /// Reads a light.
-pub fn read<'t, N: Node<'t>>(node: N, context: &mut Context) -> Outcome<Light> {
+pub fn read<'t, N: Node<'t>>(node: N, context: &mut Context) -> Outcome<Light<DVec3>> {
     let mut map = Map::open(node)?;
     let kind = map.required("type", Ok)?;
     let kind = match &*kind.text()? {
-        "point" => LightKind::Point { position: map.required("position", vector)?.as_vec3() },
+        "point" => LightKind::Point { position: map.required("position", vector)? },
         "directional" => LightKind::Directional { direction: map.required("direction", direction)?.as_vec3() },
         "spot" => spot(&mut map)?,
         other => {
@@ -44,8 +44,8 @@ pub fn read<'t, N: Node<'t>>(node: N, context: &mut Context) -> Outcome<Light> {
     Ok(light)
 }
 
-fn spot<'t, N: Node<'t>>(map: &mut Map<'t, N>) -> Outcome<LightKind> {
-    let position = map.required("position", vector)?.as_vec3();
+fn spot<'t, N: Node<'t>>(map: &mut Map<'t, N>) -> Outcome<LightKind<DVec3>> {
+    let position = map.required("position", vector)?;
     let direction = map.required("direction", direction)?.as_vec3();
     let half_angle = number_in(0.0..=90.0);
     let inner = map.optional("inner_angle", |node| Ok((node.at(), half_angle(node)?)))?;

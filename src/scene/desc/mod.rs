@@ -23,7 +23,8 @@ pub use suggest::hint;
 pub use texture::{ImageDesc, ImageSource, TextureDesc, TextureKind};
 
 use super::limits::Limits;
-use super::{Light, NamedCamera, RenderDefaults};
+use super::{Camera, Light, RenderDefaults};
+use glam::{DVec3, Vec3};
 use map::Map;
 use node::Node;
 use problem::{At, Outcome, Problem, Warnings};
@@ -37,19 +38,55 @@ pub struct NameRef {
     pub at: At,
 }
 
+/// A camera of a scene file. The scene may be moved before its places narrow to single precision.
+#[derive(Clone, Debug)]
+pub struct CameraDesc {
+    /// Where it stands in the file.
+    pub at: At,
+    /// Its name.
+    pub name: String,
+    /// Position of the eye.
+    pub eye: DVec3,
+    /// A point on the optical axis.
+    pub look_at: DVec3,
+    /// The camera where the scene is not moved.
+    pub camera: Camera,
+}
+
+impl CameraDesc {
+    /// The camera in a scene that is moved so that `origin` is at its origin.
+    pub fn place(&self, origin: DVec3) -> Outcome<Camera> {
+        let camera = match origin == DVec3::ZERO {
+            true => self.camera,
+            false => {
+                let [eye, look_at] = [self.eye, self.look_at].map(|point| (point - origin).as_vec3());
+                Camera { eye, look_at, ..self.camera }
+            }
+        };
+        let blind = || Problem::new(self.at, "as far out as the camera is, position and look_at round to one point");
+        camera.is_valid().then_some(camera).ok_or_else(blind)
+    }
+
+    /// Whether it sees anything, wherever the scene is moved.
+    pub fn is_valid(&self) -> bool {
+        let is_known = self.camera.eye.is_finite() && self.camera.look_at.is_finite();
+        is_known && Camera { eye: Vec3::ZERO, look_at: (self.look_at - self.eye).as_vec3(), ..self.camera }.is_valid()
+    }
+}
+
 /// What a scene file says.
 #[derive(Debug, Default)]
 pub struct SceneDesc {
     /// What it asks of the picture.
     pub render: RenderDefaults,
     /// Cameras; the unnamed one first.
-    pub cameras: Vec<NamedCamera>,
+    pub cameras: Vec<CameraDesc>,
     /// Textures by name.
     pub textures: Vec<TextureDesc>,
     /// Materials by name.
     pub materials: Vec<MaterialDesc>,
     /// Lights.
-    pub lights: Vec<Light>,
+    pub lights: Vec<Light<DVec3>>,
     /// The tree of objects.
     pub objects: Vec<ObjectDesc>,
 }

@@ -151,7 +151,7 @@ fn cone<'t, N: Node<'t>>(map: &mut Map<'t, N>, _: &mut Context) -> Outcome<Shape
 fn axis<'t, N: Node<'t>>(map: &mut Map<'t, N>) -> Outcome<(DVec3, DVec3)> {
     let base = map.required("base", vector)?;
     let (at, top) = map.required("top", |node| Ok((node.at(), vector(node)?)))?;
-    match base.as_vec3() == top.as_vec3() {
+    match base == top {
         true => Err(Problem::new(at, "top equals base; they must be different points")),
         false => Ok((base, top)),
     }
@@ -161,7 +161,7 @@ fn axis<'t, N: Node<'t>>(map: &mut Map<'t, N>) -> Outcome<(DVec3, DVec3)> {
 fn axis_box<'t, N: Node<'t>>(map: &mut Map<'t, N>, _: &mut Context) -> Outcome<ShapeDesc> {
     let min = map.required("min", vector)?;
     let (at, max) = map.required("max", |node| Ok((node.at(), vector(node)?)))?;
-    match max.as_vec3().cmpgt(min.as_vec3()).all() {
+    match max.cmpgt(min).all() {
         true => Ok(ShapeDesc::Box { min, max }),
         false => Err(Problem::new(at, "max must be greater than min along every axis (a flat box is a rectangle)")),
     }

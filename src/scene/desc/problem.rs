@@ -92,6 +92,26 @@ impl Warnings {
         }
     }
 
+    /// Adds those of another list.
+    pub fn append(&mut self, other: Self) {
+        for line in other.kept {
+            let key = line.kind.as_ref().map_or(&line.first.message, |(kind, _)| kind).clone();
+            match self.by_kind.get(&key) {
+                Some(&known) => {
+                    let own = &mut self.kept[known];
+                    own.count += line.count - line.places.len();
+                    own.count += line.places.into_iter().filter(|&at| own.places.insert(at)).count();
+                }
+                None if self.kept.len() < Self::KEPT => {
+                    self.by_kind.insert(key, self.kept.len());
+                    self.kept.push(line);
+                }
+                None => self.dropped += 1,
+            }
+        }
+        self.dropped += other.dropped;
+    }
+
     /// One problem a line, the last one telling how many more warnings there were.
     pub fn into_problems(self) -> Vec<Problem> {
         let mut problems: Vec<Problem> = self.kept.into_iter().map(Line::into_problem).collect();

@@ -14,6 +14,7 @@ use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
 use crate::scene::desc::{self, Context};
 use crate::scene::error::{Place, SceneError};
 use crate::scene::limits::{Limits, exceeded};
+use glam::DVec3;
 use serde::de::{DeserializeOwned, Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
@@ -32,23 +33,22 @@ pub fn read(input: &Input, builder: &mut SceneBuilder) -> Result<(), SceneError>
 }
 
 /// Reads a camera from a text that `name` stands for in errors: a camera alone, or something with a `camera` in it, such
-/// as a scene.
+/// as a scene; for a scene that was moved so that `origin` is at its origin.
 ///
 /// # Errors
 /// The text is no JSON, or what it holds is no camera; with line, column and pointer.
-pub fn read_camera(name: &str, text: &str) -> Result<Camera, SceneError> {
+pub fn read_camera(name: &str, text: &str, origin: DVec3) -> Result<Camera, SceneError> {
     let limits = Limits::default();
     let document = Document::parse(Path::new(name), text.as_bytes(), limits.nesting)?;
     let mut context = Context { limits: &limits, warnings: Warnings::default() };
     let mut read = || {
         let node = Map::open(document.root())?.take("camera").unwrap_or(document.root());
-        desc::camera::read(node, String::new(), &mut context)
+        desc::camera::read(node, String::new(), &mut context)?.place(origin)
     };
-    let named = read().map_err(|problem| {
+    read().map_err(|problem| {
         let place = document.places(&[problem.at]).remove(0);
         SceneError::Invalid { place, message: problem.message }
-    })?;
-    Ok(named.camera)
+    })
 }
 
 /// The outermost value of a text, for formats that read values in their own way; the text's syntax and nesting are

@@ -19,11 +19,11 @@ use super::words::Words;
 use super::{Input, settle};
 use crate::scene::build::SceneBuilder;
 use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
-use crate::scene::desc::{MaterialDesc, MeshDesc, NameRef, ObjectDesc, SceneDesc, ShapeDesc, hint};
+use crate::scene::desc::{CameraDesc, MaterialDesc, MeshDesc, NameRef, ObjectDesc, SceneDesc, ShapeDesc, hint};
 use crate::scene::light::{Falloff, LightKind};
 use crate::scene::limits::Limits;
 use crate::scene::material::{ColorSource, Model};
-use crate::scene::{Camera, Light, NamedCamera, SceneError};
+use crate::scene::{Camera, Light, SceneError};
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -108,8 +108,8 @@ impl<'t> Reader<'t> {
                 _ => break,
             };
             match word.bytes {
-                b"from" => from = Some(self.vector("from")?.as_vec3()),
-                b"at" => at = Some(self.vector("at")?.as_vec3()),
+                b"from" => from = Some(self.vector("from")?),
+                b"at" => at = Some(self.vector("at")?),
                 b"up" => up = Some(self.vector("up")?.as_vec3()),
                 b"angle" => angle = Some(self.words.number("angle")? as f32),
                 b"hither" => drop(self.words.number("hither")?),
@@ -120,23 +120,25 @@ impl<'t> Reader<'t> {
             }
         }
         let missing = |part: &str| Problem::new(entity, format!("the view lacks \"{part}\""));
+        let (eye, look_at) = (from.ok_or_else(|| missing("from"))?, at.ok_or_else(|| missing("at"))?);
         let camera = Camera {
-            eye: from.ok_or_else(|| missing("from"))?,
-            look_at: at.ok_or_else(|| missing("at"))?,
+            eye: eye.as_vec3(),
+            look_at: look_at.as_vec3(),
             up: up.ok_or_else(|| missing("up"))?,
             fov: angle.ok_or_else(|| missing("angle"))?,
             ..Camera::default()
         };
+        let name = match self.scene.cameras.len() {
+            0 => "default".to_owned(),
+            n => format!("view {}", n + 1),
+        };
+        let camera = CameraDesc { at: entity, name, eye, look_at, camera };
         if !camera.is_valid() {
             let message = "no view: from and at must be different points, up across the line between them, and angle \
                            between 0 and 180 degrees";
             return Err(Problem::new(entity, message));
         }
-        let name = match self.scene.cameras.len() {
-            0 => "default".to_owned(),
-            n => format!("view {}", n + 1),
-        };
-        self.scene.cameras.push(NamedCamera { name, camera });
+        self.scene.cameras.push(camera);
         Ok(())
     }
 
@@ -157,7 +159,7 @@ impl<'t> Reader<'t> {
     }
 
     fn light(&mut self, _: At) -> Outcome<()> {
-        let position = self.vector("light position")?.as_vec3();
+        let position = self.vector("light position")?;
         let color = match self.words.peek().and_then(|word| word.parsed()) {
             Some(_) => self.color("light colour")?,
             None => {
@@ -254,7 +256,7 @@ impl<'t> Reader<'t> {
         if radius as f32 == 0.0 && radius_top as f32 == 0.0 {
             return Err(Problem::new(at, "both radii are 0; one of them must be greater"));
         }
-        if base.as_vec3() == top.as_vec3() {
+        if base == top {
             return Err(Problem::new(entity, "the apex equals the base; they must be different points"));
         }
         if radius + radius_top < 0.0 {

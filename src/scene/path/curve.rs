@@ -44,7 +44,7 @@ impl Stretch {
     }
 
     /// The camera at time `t`; what the curve does not say is as in `base`.
-    pub(super) fn camera(&self, t: f64, base: &Camera) -> Camera {
+    pub(super) fn camera(&self, t: f64, base: &Camera, origin: DVec3) -> Camera {
         let s = (t - self.begin) / self.duration;
         let (s2, s3) = (s * s, s * s * s);
         let at = |curve: &Curve| {
@@ -54,8 +54,8 @@ impl Stretch {
                 + curve.arriving * (self.duration * (s3 - s2))
         };
         Camera {
-            eye: at(&self.eye).as_vec3(),
-            look_at: at(&self.target).as_vec3(),
+            eye: (at(&self.eye) - origin).as_vec3(),
+            look_at: (at(&self.target) - origin).as_vec3(),
             // A spline may swing beyond its keys; a field of view may not leave its range.
             fov: (at(&self.fov).x as f32).clamp(0.01, 179.99),
             ..*base

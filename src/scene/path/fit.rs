@@ -3,6 +3,8 @@
 use super::curve::Stretch;
 use super::{CameraPath, Key};
 use crate::scene::Camera;
+use crate::scene::camera::shortest;
+use glam::DVec3;
 
 /// Samples from one key that is made in any case to the next: what is tried between them stays short, however the
 /// samples are spread.
@@ -98,7 +100,7 @@ impl Fit<'_> {
 
     /// How far a stretch is from a sample, in tolerances.
     fn error(&self, stretch: &Stretch, sample: &Sample) -> f64 {
-        let (there, here) = (&sample.camera, stretch.camera(sample.t, &sample.camera));
+        let (there, here) = (&sample.camera, stretch.camera(sample.t, &sample.camera, DVec3::ZERO));
         let view = |camera: &Camera| (camera.look_at.as_dvec3() - camera.eye.as_dvec3()).normalize_or_zero();
         let distance = here.eye.as_dvec3().distance(there.eye.as_dvec3());
         // The chord, which is told apart from 0 where the cosine is not.
@@ -113,17 +115,12 @@ impl Key {
         let Camera { eye, look_at, fov, up, .. } = sample.camera;
         Self {
             t: sample.t,
-            position: eye.to_array().map(short),
-            look_at: look_at.to_array().map(short),
-            fov: Some(short(fov)),
-            up: Some(up.to_array().map(short)),
+            position: eye.to_array().map(shortest),
+            look_at: look_at.to_array().map(shortest),
+            fov: Some(shortest(fov)),
+            up: Some(up.to_array().map(shortest)),
         }
     }
-}
-
-/// The number that is written with the fewest digits of all that round to this one.
-fn short(number: f32) -> f64 {
-    number.to_string().parse().unwrap_or(f64::from(number))
 }
 
 #[cfg(test)]
@@ -167,7 +164,7 @@ mod tests {
         assert_eq!(read, path);
         let other = Camera { up: Vec3::X, ..Camera::default() };
         for sample in &samples {
-            let camera = read.camera_at(sample.t, &other);
+            let camera = read.camera_at(sample.t, &other, DVec3::ZERO);
             assert!(camera.eye.distance(sample.camera.eye) <= 2e-3, "at {}: {camera:?} {sample:?}", sample.t);
             let [a, b] = [&camera, &sample.camera].map(|camera| camera.frame(8, 8).forward);
             assert!(a.distance(b) <= 0.05_f32.to_radians(), "at {}: {a} {b}", sample.t);
@@ -190,7 +187,7 @@ mod tests {
             (0..200).map(|i| at(f64::from(i) / 100.0, if i < 100 { 0.0 } else { 50.0 })).collect();
         let path = CameraPath::fitted(&samples, 60.0, TOLERANCE).expect("there are samples");
         for sample in &samples[99..=100] {
-            assert_eq!(path.camera_at(sample.t, &Camera::default()), sample.camera);
+            assert_eq!(path.camera_at(sample.t, &Camera::default(), DVec3::ZERO), sample.camera);
         }
         assert!(path.keys.len() < 20, "{}", path.keys.len());
     }
@@ -205,7 +202,7 @@ mod tests {
         let path = CameraPath::fitted(&samples, 60.0, TOLERANCE).expect("there are samples");
         let read = CameraPath::parse(&path.to_json(), Path::new("walk.json")).expect("it is a path");
         for sample in &samples {
-            assert_eq!(read.camera_at(sample.t, &Camera::default()), sample.camera, "at {}", sample.t);
+            assert_eq!(read.camera_at(sample.t, &Camera::default(), DVec3::ZERO), sample.camera, "at {}", sample.t);
         }
         assert!(path.keys.len() < 10, "{} keys", path.keys.len());
     }

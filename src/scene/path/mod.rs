@@ -178,28 +178,40 @@ impl CameraPath {
         (self.duration() * self.fps + 1e-6) as u64 + 1
     }
 
-    /// The camera of frame `frame`; what a key does not say is taken from `base`.
-    pub fn camera(&self, frame: u64, base: &Camera) -> Camera {
-        self.camera_at(self.keys[0].t + frame as f64 / self.fps, base)
+    /// The camera of frame `frame` in a scene that was moved so that `origin` is at its origin; what a key does not say is
+    /// taken from `base`.
+    pub fn camera(&self, frame: u64, base: &Camera, origin: DVec3) -> Camera {
+        self.camera_at(self.keys[0].t + frame as f64 / self.fps, base, origin)
     }
 
-    /// The camera `seconds` after the first key.
-    pub fn camera_after(&self, seconds: f64, base: &Camera) -> Camera {
-        self.camera_at(self.keys[0].t + seconds, base)
+    /// The camera `seconds` after the first key, in the same way.
+    pub fn camera_after(&self, seconds: f64, base: &Camera, origin: DVec3) -> Camera {
+        self.camera_at(self.keys[0].t + seconds, base, origin)
     }
 
-    fn camera_at(&self, t: f64, base: &Camera) -> Camera {
+    /// The same path elsewhere.
+    pub fn moved(mut self, by: DVec3) -> Self {
+        if by != DVec3::ZERO {
+            for key in &mut self.keys {
+                key.position = (DVec3::from(key.position) + by).into();
+                key.look_at = (DVec3::from(key.look_at) + by).into();
+            }
+        }
+        self
+    }
+
+    fn camera_at(&self, t: f64, base: &Camera, origin: DVec3) -> Camera {
         let after = self.keys.partition_point(|key| key.t <= t);
         let key = &self.keys[after.saturating_sub(1)];
         let base = Camera { up: key.up.map_or(base.up, |up| DVec3::from(up).as_vec3()), ..*base };
         match self.keys.get(after).filter(|_| after > 0) {
             Some(next) => {
                 let neighbours = [after.checked_sub(2).map(|i| &self.keys[i]), self.keys.get(after + 1)];
-                Stretch::between(neighbours, key, next, base.fov.into()).camera(t, &base)
+                Stretch::between(neighbours, key, next, base.fov.into()).camera(t, &base, origin)
             }
             None => Camera {
-                eye: DVec3::from(key.position).as_vec3(),
-                look_at: DVec3::from(key.look_at).as_vec3(),
+                eye: (DVec3::from(key.position) - origin).as_vec3(),
+                look_at: (DVec3::from(key.look_at) - origin).as_vec3(),
                 fov: key.fov.map_or(base.fov, |fov| fov as f32).clamp(0.01, 179.99),
                 ..base
             },
@@ -236,7 +248,7 @@ mod tests {
         let base = Camera { fov: 50.0, up: Vec3::X, ..Camera::default() };
         assert_eq!(path.frame_count(), 16);
         for (frame, x, fov) in [(0, 0.0, 60.0), (5, 1.0, 50.0), (15, 3.0, 40.0), (1000, 3.0, 40.0)] {
-            let camera = path.camera(frame, &base);
+            let camera = path.camera(frame, &base, DVec3::ZERO);
             assert!((camera.eye.x - x).abs() < 1e-6, "frame {frame}: {camera:?}");
             assert!((camera.fov - fov).abs() < 1e-4, "frame {frame}: {camera:?}");
             assert_eq!(camera.up, Vec3::X);
@@ -258,7 +270,7 @@ mod tests {
     fn even_motion_stays_even_whatever_the_spacing_of_keys() {
         let path = parse(PATH).expect("it is right");
         for frame in 0..=15 {
-            let x = path.camera(frame, &Camera::default()).eye.x;
+            let x = path.camera(frame, &Camera::default(), DVec3::ZERO).eye.x;
             assert!((x - frame as f32 * 0.2).abs() < 1e-6, "frame {frame}: {x}");
         }
     }
@@ -271,7 +283,7 @@ mod tests {
             { "t": 3, "position": [5, 2, 0], "look_at": [0, 0, -1] }, { "t": 4, "position": [0, 3, 0], "look_at": [0, 0, -1] } ] }"#,
         )
         .expect("it is right");
-        let eye = |frame| path.camera(frame, &Camera::default()).eye;
+        let eye = |frame| path.camera(frame, &Camera::default(), DVec3::ZERO).eye;
         for key in [1000, 3000] {
             let (before, after) = (eye(key) - eye(key - 1), eye(key + 1) - eye(key));
             assert!((after - before).length() < 0.02 * before.length(), "{before} {after}");
@@ -283,7 +295,7 @@ mod tests {
         let path = parse(r#"{ "version": 1, "keys": [ { "t": 7, "position": [1, 2, 3], "look_at": [0, 0, 0] } ] }"#);
         let path = path.expect("it is right");
         assert_eq!(path.frame_count(), 1);
-        assert_eq!(path.camera(0, &Camera::default()).eye, Vec3::new(1.0, 2.0, 3.0));
+        assert_eq!(path.camera(0, &Camera::default(), DVec3::ZERO).eye, Vec3::new(1.0, 2.0, 3.0));
         assert_eq!(path.warning(Path::new("walk.json"), 1), None);
         assert!(path.warning(Path::new("walk.json"), 2).is_some());
     }
@@ -323,7 +335,7 @@ mod tests {
         let base = Camera { up: Vec3::Y, ..Camera::default() };
         let tilted = Vec3::new(1.0, 2.0, 0.0);
         for (frame, up) in [(0, Vec3::Y), (9, Vec3::Y), (10, tilted), (25, tilted), (30, Vec3::Z), (99, Vec3::Z)] {
-            assert_eq!(path.camera(frame, &base).up, up, "frame {frame}");
+            assert_eq!(path.camera(frame, &base, DVec3::ZERO).up, up, "frame {frame}");
         }
         let text = path.to_json();
         assert_eq!(text.matches("up").count(), 2, "where it changes: {text}");

@@ -19,7 +19,8 @@ pub fn look_up(
 ) -> (DVec3, i64) {
     let factor = source.factor.as_dvec3();
     let Some(lookup) = source.texture else { return (factor, 0) };
-    let uv = coordinates(object, primitive, surface);
+    let is_image = matches!(scene.textures[lookup.texture as usize], Texture::Image(_));
+    let uv = coordinates(object, primitive, surface, is_image);
     let (color, cell) = match &scene.textures[lookup.texture as usize] {
         Texture::Checker { colors, size } => {
             let cell = (uv / f64::from(*size)).floor();
@@ -35,7 +36,7 @@ pub fn look_up(
     (factor * color, cell)
 }
 
-/// How texture coordinates grow along a surface, by differences.
+/// How an image's coordinates grow along a surface, by differences.
 fn gradients(object: &Object, primitive: u32, surface: &Surface) -> [DVec3; 2] {
     if let (Mapping::Vertex, Some(gradients)) = (object.mapping, surface.uv_gradients) {
         return gradients;
@@ -43,7 +44,7 @@ fn gradients(object: &Object, primitive: u32, surface: &Surface) -> [DVec3; 2] {
     let mut gradients = [DVec3::ZERO; 2];
     let across = surface.geometric.any_orthonormal_vector();
     for step in [across, surface.geometric.cross(across)].map(|direction| direction * 1e-6) {
-        let at = |position| coordinates(object, primitive, &Surface { position, ..*surface });
+        let at = |position| coordinates(object, primitive, &Surface { position, ..*surface }, true);
         let grown = (at(surface.position + step) - at(surface.position - step)) / 2.0;
         gradients[0] += step * (grown.x / 1e-12);
         gradients[1] += step * (grown.y / 1e-12);
@@ -51,7 +52,7 @@ fn gradients(object: &Object, primitive: u32, surface: &Surface) -> [DVec3; 2] {
     gradients
 }
 
-fn coordinates(object: &Object, primitive: u32, surface: &Surface) -> DVec2 {
+fn coordinates(object: &Object, primitive: u32, surface: &Surface, is_image: bool) -> DVec2 {
     let into = |p: DVec3| match object.world_to_object {
         None => p,
         Some(m) => {
@@ -65,8 +66,23 @@ fn coordinates(object: &Object, primitive: u32, surface: &Surface) -> DVec2 {
     let across = surface.geometric.any_orthonormal_vector();
     let other = surface.geometric.cross(across);
     let normal = (into(surface.position + across) - p).cross(into(surface.position + other) - p).normalize();
+    // Whoever sees a surface from outside has these to the right and up.
+    let upright = |n: DVec3| match n.x == 0.0 && n.z == 0.0 {
+        true => DVec2::new(p.x, -p.z * n.y.signum()),
+        false => {
+            let right = DVec3::Y.cross(n).normalize();
+            DVec2::new(p.dot(right), p.dot(n.cross(right)))
+        }
+    };
     match object.mapping {
-        Mapping::Planar { u, v } => DVec2::new(p.dot(u.as_dvec3()), p.dot(v.as_dvec3())),
+        Mapping::Planar { checker, image } => {
+            let [u, v] = if is_image { image } else { checker };
+            DVec2::new(p.dot(u.as_dvec3()), p.dot(v.as_dvec3()))
+        }
+        Mapping::BoxFaces if is_image => {
+            let axis = normal.abs().max_position();
+            upright(DVec3::AXES[axis] * normal[axis].signum())
+        }
         Mapping::BoxFaces => match normal.abs().max_position() {
             0 => DVec2::new(p.y, p.z),
             1 => DVec2::new(p.x, p.z),
@@ -74,13 +90,18 @@ fn coordinates(object: &Object, primitive: u32, surface: &Surface) -> DVec2 {
         },
         Mapping::Sphere { center } => {
             let d = (p - center.as_dvec3()).normalize();
-            DVec2::new(d.z.atan2(d.x) / TAU + 0.5, d.y.asin() / PI + 0.5)
+            let south = if is_image { -d.z } else { d.z };
+            DVec2::new(south.atan2(d.x) / TAU + 0.5, d.y.asin() / PI + 0.5)
         }
         Mapping::Axial { base, axis } => {
             let axis = axis.as_dvec3();
-            let [a, b] = plane_axes(axis);
-            if primitive > 0 {
-                return DVec2::new(p.dot(a), p.dot(b));
+            let [a, mut b] = plane_axes(axis);
+            match (primitive, is_image) {
+                (0, true) => b = axis.cross(a),
+                (0, false) => {}
+                (1, true) => return upright(-axis),
+                (_, true) => return upright(axis),
+                (_, false) => return DVec2::new(p.dot(a), p.dot(b)),
             }
             let from = p - base.as_dvec3();
             DVec2::new(from.dot(b).atan2(from.dot(a)) / TAU + 0.5, from.dot(axis))

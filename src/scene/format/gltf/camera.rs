@@ -4,7 +4,8 @@ use super::document::{Document, get};
 use super::fault::{Read, Report};
 use super::nodes::Nodes;
 use crate::geometry::Aabb;
-use crate::scene::{Camera, NamedCamera};
+use crate::scene::Camera;
+use crate::scene::desc::CameraDesc;
 use glam::{DAffine3, DVec3};
 use gltf::json::camera::{Orthographic, Type};
 use gltf::json::validation::Checked;
@@ -18,8 +19,8 @@ pub fn cameras(
     nodes: &Nodes,
     bounds: impl Fn() -> Aabb,
     report: &mut Report,
-) -> Read<Vec<NamedCamera>> {
-    let mut cameras: Vec<NamedCamera> = Vec::new();
+) -> Read<Vec<CameraDesc>> {
+    let mut cameras: Vec<CameraDesc> = Vec::new();
     let bounds = LazyCell::new(bounds);
     for &node in &nodes.order {
         let Some(own) = &document.root.nodes[node] else { continue };
@@ -42,9 +43,10 @@ pub fn cameras(
         };
         // Far from the origin a point one metre away would round to a coarse direction.
         let reach = eye.abs().max_element().max(1.0);
+        let look_at = eye + forward * reach;
         let camera = Camera {
             eye: eye.as_vec3(),
-            look_at: (eye + forward * reach).as_vec3(),
+            look_at: look_at.as_vec3(),
             up: up.as_vec3(),
             fov: fov as f32,
             ..Camera::default()
@@ -55,7 +57,7 @@ pub fn cameras(
         }
         let name = named.name.clone().or_else(|| own.name.clone());
         let name = name.unwrap_or_else(|| format!("camera {}", cameras.len()));
-        cameras.push(NamedCamera { name, camera });
+        cameras.push(CameraDesc { at: report.at(&*pointer), name, eye, look_at, camera });
     }
     Ok(cameras)
 }

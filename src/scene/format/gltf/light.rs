@@ -5,7 +5,7 @@ use super::fault::{Read, Report};
 use super::nodes::Nodes;
 use crate::scene::Light;
 use crate::scene::light::{Falloff, LightKind};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use gltf::json::extensions::scene::khr_lights_punctual::{Light as Punctual, Type};
 use gltf::json::validation::Checked;
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
@@ -16,7 +16,7 @@ const BRIGHTEST: f32 = 1e30;
 const USUAL: [f32; 2] = [0.0, FRAC_PI_4];
 
 /// The lights of the scene, in the order of its nodes. Their `range` is left out: the square of the distance is enough.
-pub fn lights(document: &Document, nodes: &Nodes, report: &mut Report) -> Read<Vec<Light>> {
+pub fn lights(document: &Document, nodes: &Nodes, report: &mut Report) -> Read<Vec<Light<DVec3>>> {
     let mut lights = Vec::new();
     for &node in &nodes.order {
         let Some(own) = &document.root.nodes[node] else { continue };
@@ -26,9 +26,9 @@ pub fn lights(document: &Document, nodes: &Nodes, report: &mut Report) -> Read<V
         let light = get(&document.root.lights, named.light, "light", by);
         let Some(light) = report.attempt(light, "lights left out")? else { continue };
         let pointer = format!("/extensions/KHR_lights_punctual/lights/{}", named.light.value());
-        let position = world.translation.as_vec3();
+        let position = world.translation;
         let direction = (-world.matrix3.z_axis).normalize_or_zero().as_vec3();
-        if !position.is_finite() || (direction == Vec3::ZERO && light.type_ != Checked::Valid(Type::Point)) {
+        if !position.as_vec3().is_finite() || (direction == Vec3::ZERO && light.type_ != Checked::Valid(Type::Point)) {
             report.warn(format!("/nodes/{node}"), "the node of a light flattens it; the light is left out");
             continue;
         }
