@@ -114,7 +114,7 @@ pub fn read(
     let whole = statement.name_from(start.at);
     words.next();
     let behind = words.clone().find(|word| option(*word).is_some());
-    let mut file = find(&whole).or_else(|| find(bare(&whole)));
+    let mut file = find(&whole);
     if let Some(behind) = behind.filter(|_| file.is_none()) {
         let name = statement.name_between(start.at, behind.at);
         file = Some(find(bare(&name)).unwrap_or_else(|| slashes(bare(&name))));
@@ -125,7 +125,7 @@ pub fn read(
     }
     let Options { scale, offset, is_clamped, bump } = options;
     Ok(Map {
-        file: file.unwrap_or_else(|| slashes(bare(&whole))),
+        file: file.or_else(|| find(bare(&whole))).unwrap_or_else(|| slashes(bare(&whole))),
         transform: Affine2::from_scale_angle_translation(scale, 0.0, offset),
         is_clamped,
         bump,
