@@ -115,11 +115,22 @@ impl<'t> Iterator for Words<'t> {
                 self.next += start + line;
                 continue;
             }
-            let end = (start..rest.len()).find(|&i| rest[i] == b'#' || is_blank(&rest[i..])).unwrap_or(rest.len());
+            let end = (start..rest.len())
+                .find(|&i| starts_comment(&rest[..=i], rest.get(i + 1)) || is_blank(&rest[i..]))
+                .unwrap_or(rest.len());
             let at = self.next + start;
             self.next += end;
             return Some(Word { bytes: &self.text[at..self.next], at: At(at) });
         }
+    }
+}
+
+/// Whether a text ends with the start of a comment, and not within a number that is none, such as `-1.#IND`.
+fn starts_comment(text: &[u8], next: Option<&u8>) -> bool {
+    match text {
+        [.., b'.', b'#'] => !matches!(next, Some(b'I' | b'Q' | b'S' | b'N')),
+        [.., last] => *last == b'#',
+        [] => false,
     }
 }
 
@@ -148,6 +159,8 @@ mod tests {
         let line: Vec<(usize, &[u8])> = Words::line(b"ab c\\\nd e", 3..7).map(|w| (w.at.0, w.bytes)).collect();
         assert_eq!(line, [(3, &b"c"[..]), (6, b"d")]);
         assert!(Words::of(b"  # no end").next().is_none() && Words::of(b"").next().is_none());
+        let none: Vec<&[u8]> = Words::of(b"-1.#IND 1.#x").map(|word| word.bytes).collect();
+        assert_eq!(none, [&b"-1.#IND"[..], b"1."]);
         let old: Vec<&[u8]> = Words::of(b"a # c\rb\0\x1A\0").map(|word| word.bytes).collect();
         assert_eq!(old, [b"a", b"b"]);
     }

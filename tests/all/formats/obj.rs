@@ -270,7 +270,8 @@ fn what_lies_behind_shows_by_the_opacity_alone() {
     // The colours of one file, the opacities of another; where those are damaged, the colours remain.
     is("map_Kd a.png\nmap_d b.png", [0.4, 0.0, 0.6]);
     folder.write("broken.png", "no image");
-    is("map_Kd a.png\nmap_d broken.png", [0.0, 0.0, 1.0]);
+    image::RgbImage::from_pixel(4, 4, image::Rgb([0, 0, 255])).save(folder.write("blue.png", "")).unwrap();
+    is("map_Kd blue.png\nmap_d broken.png", [0.0, 0.0, 1.0]);
 }
 
 #[test]
