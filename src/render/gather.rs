@@ -420,6 +420,9 @@ macro_rules! define_surface {
 for_each_primitive!(define_surface);
 
 /// What a crossing of each lane's primitive leaves of the light: transparency times colour. 1 where nothing is crossed.
+///
+/// Blended surfaces take nothing from the headlight: what lies straight behind is seen as far as they are not opaque, and the
+/// light at the eye, which is there for the eye's sake, does not count their opacity a second time.
 #[inline(always)]
 pub(super) fn transmission<S: Simd>(
     simd: S,
@@ -444,6 +447,6 @@ pub(super) fn transmission<S: Simd>(
     let skin = Skin::of(simd, frame, &hits, &surfaces, &materials, &Sight::sharp(direction));
     let through = transparency.scale(skin.transmission) * skin.color;
     let blended = materials.lanes(simd, |material| material.blended);
-    let past = V3::all(S::f32s::splat(simd, 1.0) - skin.coverage);
+    let past = if frame.scene.headlight { one } else { V3::all(S::f32s::splat(simd, 1.0) - skin.coverage) };
     V3::select(crossed, V3::select(blended, past, through), one)
 }

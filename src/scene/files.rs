@@ -116,6 +116,7 @@ impl Files {
                 let path = self.folder.join(relative);
                 // The link is asked first, since it takes a fraction of the time where there is nothing.
                 let path = path.symlink_metadata().and_then(|_| path.canonicalize());
+                let path = path.or_else(|error| self.in_latin_1(name).ok_or(error));
                 let path = path.inspect_err(|_| self.missed(scene, relative))?;
                 if path.starts_with(scene) { Ok(path) } else { Err(FileError::Outside) }
             }
@@ -140,6 +141,22 @@ impl Files {
             path.starts_with(scene).then_some(path)
         });
         found.ok_or(error)
+    }
+
+    /// The path of a file whose name on the disk is in Latin-1, or is no text of which the characters of `name` are the bytes.
+    #[cfg(unix)]
+    fn in_latin_1(&self, name: &str) -> Option<PathBuf> {
+        use std::os::unix::ffi::OsStringExt;
+        let bytes: Vec<u8> = name.chars().map(|character| u8::try_from(character).ok()).collect::<Option<_>>()?;
+        if bytes.is_ascii() {
+            return None;
+        }
+        self.folder.join(std::ffi::OsString::from_vec(bytes)).canonicalize().ok()
+    }
+
+    #[cfg(not(unix))]
+    fn in_latin_1(&self, _: &str) -> Option<PathBuf> {
+        None
     }
 
     /// Notes what was looked for in vain, if it may yet come to be there; so may the folder that it would be in.

@@ -232,6 +232,21 @@ impl<T> Material<T> {
         plain.into_iter().chain(scaled).flatten()
     }
 
+    /// Leaves out the maps whose textures are `missing`, and with them what they would have held: a map of what glows says
+    /// where. The colour stays, since something is shown for it.
+    pub fn leave_out(&mut self, missing: impl Fn(&T) -> bool) {
+        let lost = |lookup: &Lookup<T>| missing(&lookup.texture);
+        let without = |map: &mut Option<Scaled<T>>| drop(map.take_if(|map| lost(&map.lookup)));
+        let Relief { normal, bump, parallax } = &mut self.relief;
+        [normal, bump, parallax, &mut self.occlusion].into_iter().for_each(without);
+        for map in [&mut self.metallic_roughness, &mut self.transmission] {
+            map.take_if(|lookup| lost(lookup));
+        }
+        if self.emission.texture.take_if(|lookup| lost(lookup)).is_some() {
+            self.emission.factor = Vec3::ZERO;
+        }
+    }
+
     /// Takes the metal from a metallic-roughness material: rough metal looks the same all over where the only light is at
     /// the eye.
     pub fn take_metal(&mut self) {

@@ -121,14 +121,18 @@ pub fn srgb_to_linear(byte: u8) -> f32 {
 
 /// The linear light of each sRGB byte.
 pub(super) fn srgb_table() -> &'static [f32; 256] {
-    static TABLE: LazyLock<[f32; 256]> = LazyLock::new(|| {
-        std::array::from_fn(|i| {
-            let encoded = i as f64 / 255.0;
-            let linear = if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) };
-            linear as f32
-        })
-    });
+    static TABLE: LazyLock<[f32; 256]> =
+        LazyLock::new(|| std::array::from_fn(|i| srgb_decoded(i as f64 / 255.0) as f32));
     &TABLE
+}
+
+/// Decodes an sRGB value, from 0 to 1, to linear light.
+pub fn srgb_value_to_linear(encoded: f32) -> f32 {
+    srgb_decoded(f64::from(encoded)) as f32
+}
+
+fn srgb_decoded(encoded: f64) -> f64 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
 /// Encodes linear light, from 0 to 1, to the nearest sRGB byte but for the rounding of light to 16 bits; by a table made

@@ -1,5 +1,6 @@
 //! Images: decoded once each, side by side, within a budget for all of them together.
 
+use super::dds::{Dds, DdsError};
 use crate::scene::desc::map::shortened;
 use crate::scene::desc::problem::{Outcome, Problem, Warnings};
 use crate::scene::desc::{ImageDesc, ImageSource, NameRef};
@@ -8,7 +9,7 @@ use crate::scene::guard;
 use crate::scene::limits::{Limits, exceeded};
 use crate::scene::material::Encoding;
 use crate::scene::texels::Texels;
-use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -22,6 +23,8 @@ use std::sync::Arc;
 enum DecodeError {
     #[error("{0}")]
     Image(#[from] ImageError),
+    #[error("{0}")]
+    Dds(#[from] DdsError),
     #[error("width or height is {}", exceeded("texture-edge", *.0))]
     Edge(u64),
     #[error("the scene's textures have {}", exceeded("texture-bytes", *.0))]
@@ -78,6 +81,17 @@ struct Waiting {
     encoding: Encoding,
 }
 
+/// An image that a scene asks for.
+#[derive(Clone, Copy)]
+pub struct Wanted<'a> {
+    /// Where it is.
+    pub image: &'a ImageDesc,
+    /// What its numbers are.
+    pub encoding: Encoding,
+    /// Whether it is the colour of a surface, for which something else is shown where it is missing.
+    pub is_base: bool,
+}
+
 /// The images that wait to be decoded.
 #[derive(Default)]
 struct Queue {
@@ -107,18 +121,35 @@ impl ImageStore {
         &mut self.files
     }
 
-    /// The texels of images, in the same order.
+    /// The texels of images, in the same order; `None` for one that is missing and may be, which is warned of.
     ///
     /// # Errors
-    /// An image that cannot be read or decoded and may not be missing; one that may be is a warning, and a placeholder.
-    pub fn load(&mut self, images: &[(ImageDesc, Encoding)], warnings: &mut Warnings) -> Outcome<Vec<Arc<Texels>>> {
+    /// An image that cannot be read or decoded and may not be missing.
+    pub fn load(&mut self, images: &[Wanted], warnings: &mut Warnings) -> Outcome<Vec<Option<Arc<Texels>>>> {
         let mut waiting = Queue::default();
         let mut keys = Vec::with_capacity(images.len());
-        for (image, encoding) in images {
+        for Wanted { image, encoding, .. } in images {
             keys.push(self.read(image, *encoding, &mut waiting));
         }
         self.decode(waiting.images);
-        images.iter().zip(keys).map(|((image, _), key)| self.finished(image, key, warnings)).collect()
+        // A colour whose opacity cannot be had is shown without.
+        let mut whole = Queue::default();
+        for (Wanted { image, encoding, .. }, key) in images.iter().zip(&mut keys) {
+            if let ImageSource::Masked { name, opacity } = &image.source
+                && image.optional
+                && let Err(error) = self.found(key)
+            {
+                let plain = ImageDesc { source: ImageSource::File(name.clone()), ..(*image).clone() };
+                if let Ok(plain) = self.read(&plain, *encoding, &mut whole) {
+                    let shown = shortened(&opacity.name);
+                    let message = format!("cannot read opacities of image \"{shown}\": {error}; they are left out");
+                    warnings.push(opacity.at, message);
+                    *key = Ok(plain);
+                }
+            }
+        }
+        self.decode(whole.images);
+        images.iter().zip(keys).map(|(wanted, key)| self.finished(wanted, &key, warnings)).collect()
     }
 
     /// Reads an image that is not known yet, for it to be decoded.
@@ -140,11 +171,18 @@ impl ImageStore {
             }
             ImageSource::Masked { name, opacity } => {
                 let (path, mask) = (locate(&self.files, name)?, locate(&self.files, opacity)?);
-                let key = Key::Masked(path.clone(), mask.clone(), encoding);
+                // An image that is its own mask has opacities of its own.
+                let is_own = path == mask;
+                let key = if is_own {
+                    Key::File(path.clone(), encoding)
+                } else {
+                    Key::Masked(path.clone(), mask.clone(), encoding)
+                };
                 if self.is_known(&key, waiting) {
                     return Ok(key);
                 }
-                (key, Encoded::File(self.files.read(&path)?), Some(self.files.read(&mask)?))
+                let opacity = if is_own { None } else { Some(self.files.read(&mask)?) };
+                (key, Encoded::File(self.files.read(&path)?), opacity)
             }
             ImageSource::Opacity(name) => {
                 let path = locate(&self.files, name)?;
@@ -181,7 +219,7 @@ impl ImageStore {
         let budgets: Vec<Result<Needs, DecodeError>> = waiting
             .iter()
             .map(|image| {
-                let needed = |bytes: &[u8]| guarded(|| Needs::of(bytes, &self.limits));
+                let needed = |bytes: &[u8]| guarded(|| Needs::of(bytes, image.encoding, &self.limits));
                 let opacity = image.opacity.as_deref().map_or(Ok(Needs::default()), needed)?;
                 let needs = needed(&image.bytes)?.and(opacity);
                 if needs.meanwhile > self.limits.texture_bytes {
@@ -205,36 +243,51 @@ impl ImageStore {
         self.decoded.extend(large.into_iter().map(decode));
     }
 
+    /// The texels of an image that was decoded, or why there are none.
+    fn found(&self, key: &Result<Key, FileError>) -> Result<&Arc<Texels>, String> {
+        match key {
+            Err(error) => Err(error.to_string()),
+            Ok(key) => match self.decoded.get(key) {
+                Some(decoded) => decoded.as_ref().map_err(Clone::clone),
+                None => Err(CANCELLED.to_owned()),
+            },
+        }
+    }
+
     /// The texels of an image that was decoded.
     fn finished(
         &self,
-        image: &ImageDesc,
-        key: Result<Key, FileError>,
+        Wanted { image, is_base, .. }: &Wanted,
+        key: &Result<Key, FileError>,
         warnings: &mut Warnings,
-    ) -> Outcome<Arc<Texels>> {
+    ) -> Outcome<Option<Arc<Texels>>> {
+        let error = match self.found(key) {
+            Ok(texels) => return Ok(Some(Arc::clone(texels))),
+            Err(error) => error,
+        };
         let (ImageSource::File(name)
         | ImageSource::Masked { name, .. }
         | ImageSource::Opacity(name)
         | ImageSource::Embedded { name, .. }) = &image.source;
         let shown = shortened(&name.name);
         let (problem, kind) = match key {
-            Err(error) => (format!("cannot read image \"{shown}\": {error}"), "textures missing"),
-            Ok(key) => match &self.decoded[&key] {
-                Ok(texels) => return Ok(Arc::clone(texels)),
-                Err(error) => (
-                    format!("cannot decode image \"{shown}\" (PNG, JPEG, BMP and WebP are known): {error}"),
-                    "textures that cannot be decoded",
-                ),
-            },
+            Err(_) => (format!("cannot read image \"{shown}\": {error}"), "missing"),
+            Ok(_) => (format!("cannot decode image \"{shown}\" ({KNOWN}): {error}"), "cannot be decoded"),
         };
         if !image.optional {
             return Err(Problem::new(name.at, problem));
         }
-        let first = format!("{shown}; placeholders are shown");
-        warnings.push_kind(name.at, kind, first, format!("{problem}; a placeholder is shown"));
-        Texels::placeholder().map(Arc::new).ok_or_else(|| Problem::new(name.at, "no placeholder"))
+        let (textures, done) = match is_base {
+            true => ("textures", "a placeholder is shown"),
+            false => ("maps other than colours", "it is left out"),
+        };
+        warnings.push_kind(name.at, &format!("{textures} {kind}"), shown, format!("{problem}; {done}"));
+        Ok(None)
     }
 }
+
+/// The kinds of image that can be decoded, for messages.
+const KNOWN: &str = "PNG, JPEG, BMP, WebP, TGA, TIFF, GIF and DDS are known";
 
 /// The decoders are meant never to panic on damaged files; should one do so, only its image is lost.
 fn guarded<T>(decode: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, DecodeError> {
@@ -243,8 +296,16 @@ fn guarded<T>(decode: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, Deco
 
 /// A decoder that has read an image's header.
 fn open(bytes: &[u8]) -> Result<impl ImageDecoder, DecodeError> {
-    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(ImageError::IoError)?;
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(ImageError::IoError)?;
+    if reader.format().is_none() && may_be_tga(bytes) {
+        reader.set_format(ImageFormat::Tga);
+    }
     Ok(reader.into_decoder()?)
+}
+
+/// Whether a file may be a TGA: it has no mark, but few values fit its header's second and third byte.
+fn may_be_tga(bytes: &[u8]) -> bool {
+    matches!(bytes, [_, 0 | 1, 1..=3 | 9..=11, ..])
 }
 
 /// Images that take more bytes than this while they are decoded are decoded alone.
@@ -260,9 +321,17 @@ struct Needs {
 }
 
 impl Needs {
-    fn of(bytes: &[u8], limits: &Limits) -> Result<Self, DecodeError> {
-        let decoder = open(bytes)?;
-        let (width, height) = decoder.dimensions();
+    fn of(bytes: &[u8], encoding: Encoding, limits: &Limits) -> Result<Self, DecodeError> {
+        let (width, height, total, is_wide) = if Dds::is(bytes) {
+            let Dds { width, height, .. } = Dds::open(bytes)?;
+            (width, height, 4 * u64::from(width) * u64::from(height), false)
+        } else {
+            let decoder = open(bytes)?;
+            let (width, height) = decoder.dimensions();
+            let channels = u16::from(decoder.color_type().channel_count());
+            let is_wide = encoding == Encoding::Data && decoder.color_type().bits_per_pixel() > 8 * channels;
+            (width, height, decoder.total_bytes(), is_wide)
+        };
         if u64::from(width.max(height)) > limits.texture_edge {
             return Err(DecodeError::Edge(limits.texture_edge));
         }
@@ -270,13 +339,14 @@ impl Needs {
             return Err(DecodeError::Empty);
         }
         let pixels = u64::from(width) * u64::from(height);
-        // Four bytes a texel, and a third more for the smaller sizes.
-        let kept = pixels.saturating_mul(16) / 3;
-        let as_bytes = pixels.saturating_mul(4);
+        // Four or eight bytes a texel, and a third more for the smaller sizes.
+        let texel = if is_wide { 8 } else { 4 };
+        let kept = pixels.saturating_mul(4 * texel) / 3;
+        let as_texels = pixels.saturating_mul(texel);
         // The coefficients of a progressive JPEG: two bytes for each channel.
         let coefficients = if bytes.starts_with(&[0xFF, 0xD8]) { pixels.saturating_mul(6) } else { 0 };
-        let stages = [coefficients, as_bytes].map(|beside| decoder.total_bytes().saturating_add(beside));
-        let meanwhile = stages.into_iter().fold(as_bytes.saturating_add(kept), u64::max);
+        let stages = [coefficients, as_texels].map(|beside| total.saturating_add(beside));
+        let meanwhile = stages.into_iter().fold(as_texels.saturating_add(kept), u64::max);
         Ok(Self { kept, meanwhile })
     }
 
@@ -293,6 +363,11 @@ fn one_line(message: &str) -> String {
 
 fn decode(image: &Waiting, budget: u64) -> Result<Texels, DecodeError> {
     let own = decoded(&image.bytes, budget)?;
+    if image.encoding == Encoding::Data && is_wide(&own) {
+        let pixels = own.into_rgba16();
+        let (width, height) = pixels.dimensions();
+        return Texels::of_words(width, height, pixels.into_raw().as_chunks().0, true).ok_or(DecodeError::Size);
+    }
     let channel = opacity_channel(&own);
     let mut pixels = own.into_rgba8();
     if image.is_bare {
@@ -317,8 +392,17 @@ fn opacity_channel(image: &DynamicImage) -> usize {
     if image.color().has_alpha() { 3 } else { 0 }
 }
 
-/// An image of whatever kind; 16-bit channels are reduced to 8 later.
+/// Whether an image has more than 8 bits a channel: data keep 16 of them, colours are reduced to 8.
+fn is_wide(image: &DynamicImage) -> bool {
+    let color = image.color();
+    color.bytes_per_pixel() > color.channel_count()
+}
+
+/// An image of whatever kind.
 fn decoded(bytes: &[u8], budget: u64) -> Result<DynamicImage, DecodeError> {
+    if Dds::is(bytes) {
+        return Ok(Dds::open(bytes)?.decode()?);
+    }
     let mut decoder = open(bytes)?;
     let mut limits = image::Limits::no_limits();
     limits.max_alloc = Some(budget);

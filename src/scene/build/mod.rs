@@ -3,6 +3,7 @@
 mod allowance;
 mod bounds;
 mod brightness;
+mod dds;
 mod footprint;
 mod framing;
 mod holes;
@@ -13,6 +14,7 @@ mod model;
 mod object;
 mod origin;
 mod parts;
+mod placeholder;
 mod placement;
 pub mod probe;
 mod sharing;
@@ -23,7 +25,7 @@ pub use sharing::Instancing;
 use super::desc::map::shortened;
 use super::desc::problem::{At, Outcome, Problem, Warnings};
 use super::desc::{
-    CameraDesc, ImageDesc, MaterialDesc, NameRef, ObjectDesc, SceneDesc, TextureDesc, TextureKind, hint,
+    CameraDesc, ImageSource, MaterialDesc, NameRef, ObjectDesc, SceneDesc, TextureDesc, TextureKind, hint,
 };
 use super::error::Warning;
 use super::files::{FileError, Files};
@@ -37,15 +39,16 @@ use crate::settings::Exposure;
 use allowance::Allowance;
 use glam::{DAffine3, DVec3, Vec3};
 use holes::HoleMaps;
-use image::ImageStore;
+use image::{ImageStore, Wanted};
 use model::{Contents, Models};
 use origin::far_origin;
 use parts::TOO_MANY_INDICES;
+use placeholder::Placeholders;
 use placement::Placement;
 pub(super) use probe::Probe;
 use sharing::{Census, Sharing};
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
@@ -74,6 +77,7 @@ pub struct SceneBuilder {
     progress: Progress,
     images: ImageStore,
     holes: HoleMaps,
+    placeholders: Placeholders,
     models: Models,
     parts: Vec<Part>,
     sharing: Sharing,
@@ -109,6 +113,7 @@ impl SceneBuilder {
             limits: options.limits.clone(),
             sharing: Sharing::new(options.instancing),
             holes: HoleMaps::default(),
+            placeholders: Placeholders::default(),
             parts: Vec::new(),
             objects: Vec::new(),
             origin: DVec3::ZERO,
@@ -240,7 +245,8 @@ impl SceneBuilder {
         }
     }
 
-    /// Adds materials and the textures that they name; an image is read as colours or as data, as they use it.
+    /// Adds materials and the textures that they name; an image is read as colours or as data, as they use it. What is
+    /// missing is left out, but for colours, for which placeholders are shown.
     fn add_materials(
         &mut self,
         materials: Vec<MaterialDesc>,
@@ -249,23 +255,42 @@ impl SceneBuilder {
     ) -> Outcome<Names> {
         let mut uses = TextureUses::new(textures, self.textures.len());
         let mut names = Names::new();
+        let first = self.materials.len();
         for material in materials {
             names.insert(material.name.clone(), index(self.materials.len(), At(0), "materials")?);
             self.materials.push(material.try_map(|name, encoding| uses.index(&name, encoding))?);
         }
         uses.add_unused()?;
-        let images: Vec<(ImageDesc, Encoding)> =
-            uses.images().map(|(image, encoding)| (image.clone(), encoding)).collect();
+        let added = &mut self.materials[first..];
+        let bases: HashSet<u32> = added.iter().filter_map(|material| Some(material.color.texture?.texture)).collect();
+        let images: Vec<Wanted> = uses.images(&bases).collect();
         let mut texels = self.images.load(&images, warnings)?.into_iter();
-        for &(place, _) in &uses.used {
+        let (mut missing, mut partial) = (HashSet::new(), HashSet::new());
+        for (number, &(place, _)) in (uses.before as u32..).zip(&uses.used) {
             let TextureDesc { kind, size, .. } = &textures[place];
-            match kind {
-                TextureKind::Checker(colors) => self.textures.push(Texture::Checker { colors: *colors, size: *size }),
-                TextureKind::Image(image) => self.textures.extend(
-                    texels
-                        .next()
-                        .map(|texels| Texture::Image(ImageTexture { texels, sampler: image.sampler, size: *size })),
-                ),
+            let texture = match kind {
+                TextureKind::Checker(colors) => Texture::Checker { colors: *colors, size: *size },
+                TextureKind::Image(image) => match texels.next().flatten() {
+                    Some(texels) => {
+                        let is_opacity = matches!(image.source, ImageSource::Masked { .. } | ImageSource::Opacity(_));
+                        if is_opacity && texels.has_partial_opacity() {
+                            partial.insert(number);
+                        }
+                        Texture::Image(ImageTexture { texels, sampler: image.sampler, size: *size })
+                    }
+                    None => {
+                        missing.insert(number);
+                        self.placeholders.add(number)
+                    }
+                },
+            };
+            self.textures.push(texture);
+        }
+        for material in added {
+            material.leave_out(|texture| missing.contains(texture));
+            let is_partial = material.color.texture.is_some_and(|lookup| partial.contains(&lookup.texture));
+            if is_partial && matches!(material.alpha, Alpha::Mask(_)) {
+                material.alpha = Alpha::Blend;
             }
         }
         Ok(names)
@@ -299,6 +324,7 @@ impl SceneBuilder {
             self.materials.push(Material::default_phong());
         }
         self.models.forget();
+        std::mem::take(&mut self.placeholders).finish(&mut self.textures);
         let start = Instant::now();
         let shapes = self.parts.len() + self.sharing.count();
         self.progress.begin(format!("building the tree over {shapes} shapes"), 0);
@@ -395,11 +421,13 @@ impl<'a> TextureUses<'a> {
         Ok(())
     }
 
-    /// The images among those used, in their order.
-    fn images(&self) -> impl Iterator<Item = (&'a ImageDesc, Encoding)> {
-        self.used.iter().filter_map(|&(place, encoding)| match &self.textures[place].kind {
-            TextureKind::Image(image) => Some((image, encoding)),
-            TextureKind::Checker(_) => None,
+    /// The images among those used, in their order; `bases` are the indices of the textures that are colours of surfaces.
+    fn images(&self, bases: &HashSet<u32>) -> impl Iterator<Item = Wanted<'a>> {
+        (self.before as u32..).zip(&self.used).filter_map(|(number, &(place, encoding))| {
+            match &self.textures[place].kind {
+                TextureKind::Image(image) => Some(Wanted { image, encoding, is_base: bases.contains(&number) }),
+                TextureKind::Checker(_) => None,
+            }
         })
     }
 }

@@ -68,6 +68,9 @@ impl SceneBuilder {
             ShapeDesc::Mesh(mesh) => self.holes.cut(material, &self.materials, &self.textures, mesh),
             _ => None,
         };
+        if let ShapeDesc::Mesh(mesh) = &object.shape {
+            self.placeholders.measure(&self.materials[material as usize], mesh, placement);
+        }
         let is_thin = self.materials[material as usize].is_thin();
         let elsewhere = self.sharing.totals();
         let room = (&mut self.parts, &mut self.lost);

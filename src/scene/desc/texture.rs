@@ -36,7 +36,8 @@ pub struct ImageDesc {
     pub source: ImageSource,
     /// How it is looked up.
     pub sampler: Sampler,
-    /// A file that is missing or damaged becomes a placeholder and a warning rather than an error.
+    /// A file that is missing or damaged is a warning rather than an error: a placeholder is shown for a colour, any other map
+    /// is left out.
     pub optional: bool,
 }
 
@@ -45,7 +46,8 @@ pub struct ImageDesc {
 pub enum ImageSource {
     /// In a file, relative to the scene's folder.
     File(NameRef),
-    /// In a file, but for the opacity, which another file holds: in its alpha channel, else in its brightness.
+    /// In a file, but for the opacity, which another file holds: in its alpha channel, else in its brightness. If it is the
+    /// same file, the opacity is its own.
     Masked {
         /// The file of the colours.
         name: NameRef,

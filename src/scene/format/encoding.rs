@@ -21,6 +21,16 @@ fn decoded(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Vec<u8> {
     characters.collect::<String>().into_bytes()
 }
 
+/// A name as text: UTF-8, else Latin-1, whose characters are its bytes. So names that differ in any encoding differ here.
+pub fn name(bytes: &[u8]) -> String {
+    str::from_utf8(bytes).map_or_else(|_| bytes.iter().map(|byte| char::from(*byte)).collect(), str::to_owned)
+}
+
+/// Whether a byte is of a character of several bytes: in Shift-JIS and GBK, what follows it may be a backslash that is none.
+pub fn is_wide(byte: u8) -> bool {
+    byte >= 0x80
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -43,5 +53,14 @@ mod tests {
         }
         assert_eq!(&*as_utf8(b"\xFF\xFE{"), b"");
         assert_eq!(&*as_utf8(b"\xE9\x80"), b"\xE9\x80");
+    }
+
+    #[test]
+    fn names_that_differ_in_bytes_stay_different() {
+        let names: [&[u8]; 5] = [b"\xBA\xEC", b"\xC2\xCC", b"\x90\xD4", b"caf\xE9", b"caf\xE8"];
+        let texts: std::collections::HashSet<String> = names.iter().map(|bytes| name(bytes)).collect();
+        assert_eq!(texts.len(), names.len());
+        assert_eq!(name("café".as_bytes()), "café");
+        assert_eq!(name(b"caf\xE9"), "café");
     }
 }

@@ -1,6 +1,7 @@
 //! Scene files by format: one row a format, one reader a row.
 
 mod encoding;
+mod faults;
 mod gltf;
 mod json;
 mod nff;

@@ -11,14 +11,17 @@
 //! pp 3  0 0 0 0 0 1  ..                 patch: corners with normals
 //! ```
 //!
-//! A surface is drawn from both sides. `hither` is read and left: it is meant for hidden-surface algorithms.
+//! A surface is drawn from both sides. `hither` is read and left: it is meant for hidden-surface algorithms. An entity that
+//! is damaged or unknown is left out with a warning, up to the next line that starts with one.
 
+use super::encoding::as_utf8;
+use super::faults::Faults;
 use super::place::by_line;
 use super::polygon::{Cutter, area_vector};
 use super::words::Words;
 use super::{Input, settle};
 use crate::scene::build::SceneBuilder;
-use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
+use crate::scene::desc::problem::{At, Outcome, Problem};
 use crate::scene::desc::{CameraDesc, MaterialDesc, MeshDesc, NameRef, ObjectDesc, SceneDesc, ShapeDesc, hint};
 use crate::scene::light::{Falloff, LightKind};
 use crate::scene::limits::Limits;
@@ -47,9 +50,10 @@ fn entities<'t>() -> [Entity<'t>; 8] {
 
 /// Reads an NFF scene into `builder`.
 pub fn read(input: &Input, builder: &mut SceneBuilder) -> Result<(), SceneError> {
-    let mut reader = Reader::of(input.bytes, builder.limits());
+    let text = as_utf8(input.bytes);
+    let mut reader = Reader::of(&text, builder.limits());
     let described = reader.read();
-    settle(described, reader.warnings, builder, |positions| by_line(input.path, input.bytes, positions))
+    settle(described, reader.faults.warnings, builder, |positions| by_line(input.path, &text, positions))
 }
 
 /// A file being read.
@@ -64,7 +68,7 @@ struct Reader<'t> {
     /// The fill of the objects to come.
     fill: Option<NameRef>,
     cutter: Cutter,
-    warnings: Warnings,
+    faults: Faults,
 }
 
 impl<'t> Reader<'t> {
@@ -77,26 +81,49 @@ impl<'t> Reader<'t> {
             fills: HashMap::new(),
             fill: None,
             cutter: Cutter::new(),
-            warnings: Warnings::default(),
+            faults: Faults::default(),
         }
     }
 
     fn read(&mut self) -> Outcome<SceneDesc> {
         let entities = entities();
         while let Some(word) = self.words.next() {
-            let Some((_, read)) = entities.iter().find(|(name, _)| name.as_bytes() == word.bytes) else {
+            let after = self.words.clone();
+            let Some((name, read)) = entities.iter().find(|(name, _)| name.as_bytes() == word.bytes) else {
                 let hint = hint(&word.shown(), entities.iter().map(|(name, _)| *name));
-                return Err(Problem::new(word.at, format!("unknown entity \"{}\"; {hint}", word.shown())));
+                let message = format!("unknown entity \"{}\"; {hint}", word.shown());
+                self.faults.add(Problem::new(word.at, &*message), format!("{message}; it is left out"));
+                self.skip(after);
+                continue;
             };
-            read(self, word.at)?;
+            if let Err(problem) = read(self, word.at) {
+                let done = format!("{}; the entity {name} is left out", problem.message);
+                self.faults.add(problem, done);
+                self.skip(after);
+            }
         }
-        self.cutter.warn(&mut self.warnings);
+        if let Some(fault) = self.faults.first().filter(|_| self.scene.objects.is_empty()) {
+            return Err(fault);
+        }
+        self.cutter.warn(&mut self.faults.warnings);
         // "A useful intensity as desired": the lights without a colour give 1/√n each, of n lights.
         let intensity = 1.0 / (self.scene.lights.len() as f32).sqrt();
         for light in &self.plain_lights {
             self.scene.lights[*light].color = Vec3::splat(intensity);
         }
         Ok(std::mem::take(&mut self.scene))
+    }
+
+    /// Goes on at the next line that starts with an entity.
+    fn skip(&mut self, from: Words<'t>) {
+        let entities = entities();
+        self.words = from;
+        while let Some(word) = self.words.peek() {
+            if entities.iter().any(|(name, _)| name.as_bytes() == word.bytes) && self.words.starts_line(&word) {
+                break;
+            }
+            self.words.next();
+        }
     }
 
     fn view(&mut self, entity: At) -> Outcome<()> {
@@ -113,10 +140,15 @@ impl<'t> Reader<'t> {
                 b"up" => up = Some(self.vector("up")?.as_vec3()),
                 b"angle" => angle = Some(self.words.number("angle")? as f32),
                 b"hither" => drop(self.words.number("hither")?),
-                _ => {
-                    self.scene.render.width = Some(self.picture_edge()?);
-                    self.scene.render.height = Some(self.picture_edge()?);
-                }
+                _ => match [self.picture_edge()?, self.picture_edge()?] {
+                    [Ok(width), Ok(height)] => {
+                        (self.scene.render.width, self.scene.render.height) = (Some(width), Some(height));
+                    }
+                    [Err(problem), _] | [_, Err(problem)] => {
+                        let done = format!("{}; the resolution is left out", problem.message);
+                        self.faults.add(problem, done);
+                    }
+                },
             }
         }
         let missing = |part: &str| Problem::new(entity, format!("the view lacks \"{part}\""));
@@ -142,15 +174,16 @@ impl<'t> Reader<'t> {
         Ok(())
     }
 
-    fn picture_edge(&mut self) -> Outcome<u32> {
+    /// A number of pixels, or what is wrong with the number that stands there.
+    fn picture_edge(&mut self) -> Outcome<Outcome<u32>> {
         let at = self.next_at();
         let pixels = self.words.number("resolution")?;
         let max = self.limits.picture_edge;
         if pixels.fract() != 0.0 || pixels < 1.0 || pixels > max as f64 {
             let message = format!("{pixels} is out of range; expected a whole number from 1 to {max}");
-            return Err(Problem::new(at, message));
+            return Ok(Err(Problem::new(at, message)));
         }
-        Ok(pixels as u32)
+        Ok(Ok(pixels as u32))
     }
 
     fn background(&mut self, _: At) -> Outcome<()> {
@@ -214,7 +247,9 @@ impl<'t> Reader<'t> {
     /// The part of the light that is mirrored or let through.
     fn share(&mut self, value: f32, what: &str, at: At) -> Vec3 {
         if value > 1.0 {
-            self.warnings.push(at, format!("{what} is {value}; no more than all light is mirrored or let through"));
+            self.faults
+                .warnings
+                .push(at, format!("{what} is {value}; no more than all light is mirrored or let through"));
         }
         Vec3::splat(value.min(1.0))
     }
@@ -225,7 +260,9 @@ impl<'t> Reader<'t> {
             return ior;
         }
         if transparency != Vec3::ZERO {
-            self.warnings.push(at, format!("index of refraction {ior} is taken as 1; expected one greater than 0"));
+            self.faults
+                .warnings
+                .push(at, format!("index of refraction {ior} is taken as 1; expected one greater than 0"));
         }
         1.0
     }
@@ -269,7 +306,7 @@ impl<'t> Reader<'t> {
     }
 
     fn warn_of_inside(&mut self, at: At) {
-        self.warnings.push(at, "a radius below 0 asks for the inside only; both sides are drawn");
+        self.faults.warnings.push(at, "a radius below 0 asks for the inside only; both sides are drawn");
     }
 
     fn polygon(&mut self, entity: At) -> Outcome<()> {
@@ -291,7 +328,7 @@ impl<'t> Reader<'t> {
             // It is left out for want of an area; its normals do not matter.
             normals.clear();
         } else if normals.iter().any(|n| n.try_normalize().is_none()) {
-            self.warnings.push(entity, "a normal of length 0; the patch's own is taken");
+            self.faults.warnings.push(entity, "a normal of length 0; the patch's own is taken");
             normals.iter_mut().filter(|n| n.try_normalize().is_none()).for_each(|n| *n = flat);
         }
         let triangles = self.cutter.cut(&vertices).to_vec();

@@ -23,13 +23,20 @@ pub fn line_columns(text: &[u8], positions: &[At]) -> Vec<(usize, usize)> {
     let (mut line, mut column, mut walked) = (1, 1, 0);
     let mut found = vec![(1, 1); positions.len()];
     for (at, i) in sorted {
-        let step = &text[walked..at.0.clamp(walked, text.len())];
-        walked += step.len();
-        match step.iter().rposition(|byte| *byte == b'\n') {
-            None => column += step.iter().filter(is_first_byte).count(),
-            Some(newline) => {
-                line += step.iter().filter(|byte| **byte == b'\n').count();
-                column = 1 + step[newline + 1..].iter().filter(is_first_byte).count();
+        let start = walked;
+        walked = at.0.clamp(walked, text.len());
+        // LF ends a line, and so does a CR before anything else.
+        let ends_line = |i: &usize| match text[*i] {
+            b'\n' => true,
+            b'\r' => text.get(i + 1) != Some(&b'\n'),
+            _ => false,
+        };
+        let lines = (start..walked).filter(ends_line).count();
+        match (start..walked).rfind(ends_line) {
+            None => column += text[start..walked].iter().filter(is_first_byte).count(),
+            Some(end) => {
+                line += lines;
+                column = 1 + text[end + 1..walked].iter().filter(is_first_byte).count();
             }
         }
         found[i] = (line, column);
@@ -56,6 +63,7 @@ mod tests {
         assert_eq!(line_column(text, 5), (2, 3));
         assert_eq!(line_column(text, 99), (2, 5));
         assert_eq!(line_columns(text, &[5, 0, 99, 2].map(At)), [(2, 3), (1, 1), (2, 5), (2, 1)]);
+        assert_eq!(line_columns(b"a\rb\r\nc\r", &[2, 5, 7].map(At)), [(2, 1), (3, 1), (4, 1)]);
         assert_eq!(byte_offset(text, 1, 1), 0);
         assert_eq!(byte_offset(text, 2, 4), 5);
         assert_eq!(byte_offset(text, 9, 9), text.len());

@@ -28,11 +28,15 @@ impl Word<'_> {
         }
     }
 
-    /// The word as a number, unless it spells none; `inf` and `nan` are none.
+    /// The word as a number, unless it spells none; `inf`, `nan` and `-1.#IND` are none. Some programs write exponents as
+    /// Fortran does, or marks behind numbers.
     pub fn parsed(&self) -> Option<f64> {
-        let text = str::from_utf8(self.bytes).ok()?;
+        let text = str::from_utf8(self.bytes).ok()?.trim_end_matches([',', ';']);
         let first = text.trim_start_matches(['+', '-']).bytes().next()?;
-        if first == b'.' || first.is_ascii_digit() { text.parse().ok() } else { None }
+        if first != b'.' && !first.is_ascii_digit() {
+            return None;
+        }
+        text.parse().ok().or_else(|| text.replace(['D', 'd'], "e").parse().ok())
     }
 
     /// The problem of finding this word instead of what was expected.
@@ -42,7 +46,8 @@ impl Word<'_> {
 }
 
 /// The words of a text from left to right. What follows a `#` on its line is a comment; a backslash at the end of a line
-/// is a blank.
+/// is a blank, and so are the zeros and the end-of-file mark that some programs write behind a text. Lines end with LF, CR
+/// or both.
 #[derive(Clone, Debug)]
 pub struct Words<'t> {
     text: &'t [u8],
@@ -64,6 +69,12 @@ impl<'t> Words<'t> {
     /// The next word, left where it is.
     pub fn peek(&self) -> Option<Word<'t>> {
         self.clone().next()
+    }
+
+    /// Whether a word of this text is the first of its line.
+    pub fn starts_line(&self, word: &Word) -> bool {
+        let before = self.text[..word.at.0].iter().rev().find(|byte| !matches!(byte, b' ' | b'\t'));
+        before.is_none_or(|byte| matches!(byte, b'\n' | b'\r'))
     }
 
     /// Where the words end.
@@ -100,11 +111,13 @@ impl<'t> Iterator for Words<'t> {
             let rest = &self.text[self.next..self.end];
             let start = (0..rest.len()).find(|&i| !is_blank(&rest[i..]))?;
             if rest[start] == b'#' {
-                let line = rest[start..].iter().position(|byte| *byte == b'\n')?;
+                let line = rest[start..].iter().position(|byte| matches!(byte, b'\n' | b'\r'))?;
                 self.next += start + line;
                 continue;
             }
-            let end = (start..rest.len()).find(|&i| rest[i] == b'#' || is_blank(&rest[i..])).unwrap_or(rest.len());
+            let end = (start..rest.len())
+                .find(|&i| starts_comment(&rest[..=i], rest.get(i + 1)) || is_blank(&rest[i..]))
+                .unwrap_or(rest.len());
             let at = self.next + start;
             self.next += end;
             return Some(Word { bytes: &self.text[at..self.next], at: At(at) });
@@ -112,9 +125,21 @@ impl<'t> Iterator for Words<'t> {
     }
 }
 
+/// Whether a text ends with the start of a comment, and not within a number that is none, such as `-1.#IND`.
+fn starts_comment(text: &[u8], next: Option<&u8>) -> bool {
+    match text {
+        [.., b'.', b'#'] => !matches!(next, Some(b'I' | b'Q' | b'S' | b'N')),
+        [.., last] => *last == b'#',
+        [] => false,
+    }
+}
+
 /// Whether a text starts with a blank.
 fn is_blank(text: &[u8]) -> bool {
-    text[0].is_ascii_whitespace() || text.starts_with(b"\\\n") || text.starts_with(b"\\\r\n")
+    match text[0] {
+        b'\\' => matches!(text.get(1), Some(b'\n' | b'\r')),
+        byte => byte.is_ascii_whitespace() || matches!(byte, b'\0' | b'\x0B' | b'\x1A'),
+    }
 }
 
 /// Where a text starts: some programs begin it with a mark of its byte order.
@@ -134,6 +159,10 @@ mod tests {
         let line: Vec<(usize, &[u8])> = Words::line(b"ab c\\\nd e", 3..7).map(|w| (w.at.0, w.bytes)).collect();
         assert_eq!(line, [(3, &b"c"[..]), (6, b"d")]);
         assert!(Words::of(b"  # no end").next().is_none() && Words::of(b"").next().is_none());
+        let none: Vec<&[u8]> = Words::of(b"-1.#IND 1.#x").map(|word| word.bytes).collect();
+        assert_eq!(none, [&b"-1.#IND"[..], b"1."]);
+        let old: Vec<&[u8]> = Words::of(b"a # c\rb\0\x1A\0").map(|word| word.bytes).collect();
+        assert_eq!(old, [b"a", b"b"]);
     }
 
     #[test]
@@ -141,7 +170,12 @@ mod tests {
         let number = |text: &'static [u8]| Words::of(text).number("size").map_err(|problem| problem.message);
         assert_eq!(number(b"+.5e1"), Ok(5.0));
         assert_eq!(number(b"-3."), Ok(-3.0));
-        for word in [&b"nan"[..], b"inf", b"-infinity", b"1x", b"0x10", b"\xFF", b"--1", b"."] {
+        assert_eq!(number(b"-1.5D+01"), Ok(-15.0));
+        assert_eq!(number(b"2,"), Ok(2.0));
+        assert_eq!(number(b"0;"), Ok(0.0));
+        for word in
+            [&b"nan"[..], b"inf", b"-infinity", b"1x", b"0x10", b"\xFF", b"--1", b".", b"-1.#IND", b"-nan(ind)", b"1,5"]
+        {
             assert!(number(word).is_err_and(|m| m.contains("expected a number (size)")), "{word:?}");
         }
         assert!(number(b"1e39").is_err_and(|m| m.contains("too large")));

@@ -1,9 +1,5 @@
 //! Smaller sizes of a picture (Williams, "Pyramidal parametrics", SIGGRAPH 1983).
 
-use super::decode_table;
-use crate::scene::material::Encoding;
-use crate::scene::texture::linear_to_srgb;
-
 /// Texels of the larger size under one of the smaller, along one axis: at most three, with their shares.
 struct Taps {
     first: u32,
@@ -29,19 +25,40 @@ impl Taps {
     }
 }
 
+/// How a channel of a picture is stored.
+pub(super) struct Coding<D, E> {
+    /// What a stored colour or datum stands for, from 0 to 1.
+    pub decode: D,
+    /// The way back.
+    pub encode: E,
+}
+
+/// A stored channel.
+pub(super) trait Channel: Copy + Into<f32> {
+    /// The opacity nearest to a mean of some.
+    fn opacity(mean: f32) -> Self;
+}
+
+impl Channel for u8 {
+    fn opacity(mean: f32) -> Self {
+        (mean + 0.5) as Self
+    }
+}
+
+impl Channel for u16 {
+    fn opacity(mean: f32) -> Self {
+        (mean + 0.5) as Self
+    }
+}
+
 /// The picture at a smaller size: means of what each texel covers, in linear light. Colours count by how opaque they
 /// are, so that what is hidden in holes does not bleed out of them.
-pub(super) fn halve(
-    rows: &[[u8; 4]],
+pub(super) fn halve<C: Channel>(
+    rows: &[[C; 4]],
     [width, height]: [u32; 2],
     [to_width, to_height]: [u32; 2],
-    encoding: Encoding,
-) -> Vec<[u8; 4]> {
-    let decode = decode_table(encoding);
-    let encode = |value: f32| match encoding {
-        Encoding::Color => linear_to_srgb(value),
-        Encoding::Data => (value * 255.0 + 0.5) as u8,
-    };
+    coding: &Coding<impl Fn(C) -> f32, impl Fn(f32) -> C>,
+) -> Vec<[C; 4]> {
     let (across, down) = (Taps::row(width, to_width), Taps::row(height, to_height));
     let mut smaller = Vec::with_capacity(across.len() * down.len());
     for down in &down {
@@ -51,18 +68,18 @@ pub(super) fn halve(
                 for (x, share_across) in across.places() {
                     let [r, g, b, a] = rows[y * width as usize + x];
                     let share = share_down * share_across;
-                    let own = share * f32::from(a);
+                    let own = share * a.into();
                     opacity += own;
-                    for (channel, byte) in [r, g, b].into_iter().enumerate() {
-                        let value = decode[usize::from(byte)];
+                    for (channel, stored) in [r, g, b].into_iter().enumerate() {
+                        let value = (coding.decode)(stored);
                         plain[channel] += share * value;
                         weighted[channel] += own * value;
                     }
                 }
             }
             let color = if opacity > 0.0 { weighted.map(|value| value / opacity) } else { plain };
-            let [r, g, b] = color.map(encode);
-            smaller.push([r, g, b, (opacity + 0.5) as u8]);
+            let [r, g, b] = color.map(&coding.encode);
+            smaller.push([r, g, b, C::opacity(opacity)]);
         }
     }
     smaller
@@ -70,7 +87,9 @@ pub(super) fn halve(
 
 #[cfg(test)]
 mod tests {
+    use super::super::{bytes, words};
     use super::*;
+    use crate::scene::material::Encoding;
 
     #[test]
     fn every_texel_counts_for_its_area() {
@@ -90,9 +109,11 @@ mod tests {
     #[test]
     fn means_are_taken_in_linear_light_and_of_what_is_seen() {
         let rows = [[0, 0, 0, 255], [255, 255, 255, 255]];
-        assert_eq!(halve(&rows, [2, 1], [1, 1], Encoding::Color), [[188, 188, 188, 255]]);
-        assert_eq!(halve(&rows, [2, 1], [1, 1], Encoding::Data), [[128, 128, 128, 255]]);
+        assert_eq!(halve(&rows, [2, 1], [1, 1], &bytes(Encoding::Color)), [[188, 188, 188, 255]]);
+        assert_eq!(halve(&rows, [2, 1], [1, 1], &bytes(Encoding::Data)), [[128, 128, 128, 255]]);
+        let words_of = [[0, 1, 65_535, 65_535], [65_535, 2, 65_535, 65_535]];
+        assert_eq!(halve(&words_of, [2, 1], [1, 1], &words()), [[32_768, 2, 65_535, 65_535]]);
         let hole = [[10, 20, 30, 255], [255, 255, 255, 0]];
-        assert_eq!(halve(&hole, [2, 1], [1, 1], Encoding::Color), [[10, 20, 30, 128]]);
+        assert_eq!(halve(&hole, [2, 1], [1, 1], &bytes(Encoding::Color)), [[10, 20, 30, 128]]);
     }
 }

@@ -1,14 +1,15 @@
 //! The texels of a picture, laid out for filtered lookups by packets.
 
 mod mip;
+mod opacity;
 
 use super::material::Encoding;
-use super::texture::{Blending, Sampler, Wrap, srgb_table};
+use super::texture::{Blending, Sampler, Wrap, linear_to_srgb, srgb_table};
 use crate::math::V3;
 use crate::math::power::log2;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use std::sync::Arc;
+use mip::{Channel, Coding};
 
 /// Lane mask of native width.
 type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
@@ -23,8 +24,17 @@ pub struct Texels {
     encoding: Encoding,
     /// The full size first. Never empty.
     levels: Box<[Level]>,
-    /// Red, green, blue and opacity, from the lowest byte up; 0 in what fills up the last tiles.
-    texels: Box<[u32]>,
+    /// Red, green, blue and opacity; 0 in what fills up the last tiles.
+    texels: Store,
+}
+
+/// Texels, their channels from the lowest bits up.
+#[derive(Clone, Debug, PartialEq)]
+enum Store {
+    /// Of 8 bits a channel.
+    Bytes(Box<[u32]>),
+    /// Of 16 bits a channel, which are linear.
+    Words(Box<[u64]>),
 }
 
 /// One size of a picture.
@@ -73,26 +83,39 @@ impl Texels {
     /// From encoded texels, row by row from the top, with all smaller sizes if `mips`. `None` unless there are
     /// `width` x `height` of them, both at least 1, and few enough to be numbered by a u32.
     pub fn new(width: u32, height: u32, rows: &[[u8; 4]], encoding: Encoding, mips: bool) -> Option<Self> {
+        let (levels, texels) = Self::laid_out(width, height, rows, &bytes(encoding), u32::from_le_bytes, mips)?;
+        Some(Self { encoding, levels, texels: Store::Bytes(texels) })
+    }
+
+    /// From data of 16 bits a channel, likewise.
+    pub fn of_words(width: u32, height: u32, rows: &[[u16; 4]], mips: bool) -> Option<Self> {
+        let pack = |texel: [u16; 4]| texel.iter().rev().fold(0, |packed, word| packed << 16 | u64::from(*word));
+        let (levels, texels) = Self::laid_out(width, height, rows, &words(), pack, mips)?;
+        Some(Self { encoding: Encoding::Data, levels, texels: Store::Words(texels) })
+    }
+
+    fn laid_out<C: Channel, P: Copy + Default>(
+        width: u32,
+        height: u32,
+        rows: &[[C; 4]],
+        coding: &Coding<impl Fn(C) -> f32, impl Fn(f32) -> C>,
+        pack: impl Fn([C; 4]) -> P,
+        mips: bool,
+    ) -> Option<(Box<[Level]>, Box<[P]>)> {
         if rows.is_empty() || rows.len() as u64 != u64::from(width) * u64::from(height) {
             return None;
         }
         let (levels, len) = Level::chain(width, height, mips)?;
-        let mut texels = vec![0; len as usize];
-        levels[0].fill(rows, &mut texels);
+        let mut texels = vec![P::default(); len as usize];
+        levels[0].fill(rows, &mut texels, &pack);
         let mut smaller;
         let mut rows = rows;
         for pair in levels.windows(2) {
-            smaller = mip::halve(rows, [pair[0].width, pair[0].height], [pair[1].width, pair[1].height], encoding);
-            pair[1].fill(&smaller, &mut texels);
+            smaller = mip::halve(rows, [pair[0].width, pair[0].height], [pair[1].width, pair[1].height], coding);
+            pair[1].fill(&smaller, &mut texels, &pack);
             rows = &smaller;
         }
-        Some(Self { encoding, levels, texels: texels.into() })
-    }
-
-    /// What stands for a picture that is not to be had: squares of magenta and black.
-    pub fn placeholder() -> Option<Self> {
-        let [magenta, black] = [[255, 0, 255, 255], [0, 0, 0, 255]];
-        Self::new(2, 2, &[magenta, black, black, magenta], Encoding::Color, false)
+        Some((levels, texels.into()))
     }
 
     /// Width in texels, at least 1.
@@ -117,33 +140,25 @@ impl Texels {
 
     /// Bytes that the texels take.
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.texels)
+        match &self.texels {
+            Store::Bytes(texels) => size_of_val(&**texels),
+            Store::Words(texels) => size_of_val(&**texels),
+        }
     }
 
-    /// The encoded texel in column `x` of row `y` of a size, counted from the top left; all must be inside.
+    /// The encoded texel in column `x` of row `y` of a size, counted from the top left; all must be inside. Of channels of
+    /// 16 bits, the upper 8.
     pub fn texel(&self, level: usize, x: u32, y: u32) -> [u8; 4] {
-        self.texels[self.levels[level].place(x, y)].to_le_bytes()
+        let place = self.levels[level].place(x, y);
+        match &self.texels {
+            Store::Bytes(texels) => texels[place].to_le_bytes(),
+            Store::Words(texels) => unpacked(texels[place]).map(|word| (word >> 8) as u8),
+        }
     }
 
     /// Width and height of a size.
     pub fn size(&self, level: usize) -> [u32; 2] {
         [self.levels[level].width, self.levels[level].height]
-    }
-
-    /// Whether some texel is not wholly opaque.
-    pub fn has_holes(&self) -> bool {
-        self.full_size().any(|[.., opacity]| opacity != u8::MAX)
-    }
-
-    /// Opacities of the full size, row by row from the top.
-    pub fn opacities(&self) -> Arc<[u8]> {
-        self.full_size().map(|[.., opacity]| opacity).collect()
-    }
-
-    /// The texels of the full size, row by row from the top.
-    fn full_size(&self) -> impl Iterator<Item = [u8; 4]> {
-        let [width, height] = self.size(0);
-        (0..height).flat_map(move |y| (0..width).map(move |x| self.texel(0, x, y)))
     }
 
     /// Filtered lookup for the lanes in the bit set `lanes`; others get anything. The picture is 1 wide and 1 high;
@@ -262,31 +277,92 @@ impl Texels {
     }
 
     /// The texels at four places a lane, linear; 0 in the lanes that are not in the bit set `lanes`.
-    ///
-    /// All four of a lane in one round: its waits for memory overlap. Texels of [u16; 4] in linear light were a quarter
-    /// faster where they fit the cache, but slower where they do not, and no longer exact. Separate loops that load and
-    /// decode become gather instructions, which are slower than this.
     #[inline(always)]
     fn gather<S: Simd, const OPACITY: bool>(&self, simd: S, places: &[S::u32s; 4], lanes: u64) -> [Texel<S>; 4] {
-        let (texels, decode) = (&*self.texels, decode_table(self.encoding));
-        let zero = S::f32s::splat(simd, 0.0);
-        let mut found = [Texel::<S> { color: V3::all(zero), opacity: zero }; 4];
-        let mut left = lanes;
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize % S::u32s::LEN;
-            left &= left - 1;
-            for (places, found) in places.iter().zip(&mut found) {
-                let [r, g, b, a] = texels[places[lane] as usize].to_le_bytes();
-                found.color.x.as_mut_slice()[lane] = decode[usize::from(r)];
-                found.color.y.as_mut_slice()[lane] = decode[usize::from(g)];
-                found.color.z.as_mut_slice()[lane] = decode[usize::from(b)];
-                if OPACITY {
-                    found.opacity.as_mut_slice()[lane] = f32::from(a) * (1.0 / 255.0);
-                }
+        match &self.texels {
+            Store::Bytes(texels) => {
+                let decode = decode_table(self.encoding);
+                gather_with::<S, OPACITY>(
+                    simd,
+                    places,
+                    lanes,
+                    #[inline(always)]
+                    |place| {
+                        let [r, g, b, a] = texels[place].to_le_bytes();
+                        ([r, g, b].map(|byte| decode[usize::from(byte)]), f32::from(a) * (1.0 / 255.0))
+                    },
+                )
+            }
+            Store::Words(texels) => gather_with::<S, OPACITY>(
+                simd,
+                places,
+                lanes,
+                #[inline(always)]
+                |place| {
+                    let [r, g, b, a] = unpacked(texels[place]).map(word_value);
+                    ([r, g, b], a)
+                },
+            ),
+        }
+    }
+}
+
+/// What `texel` says of four places a lane.
+///
+/// All four of a lane in one round: its waits for memory overlap. Texels of [u16; 4] in linear light were a quarter
+/// faster where they fit the cache, but slower where they do not, and no longer exact. Separate loops that load and
+/// decode become gather instructions, which are slower than this.
+#[inline(always)]
+fn gather_with<S: Simd, const OPACITY: bool>(
+    simd: S,
+    places: &[S::u32s; 4],
+    lanes: u64,
+    texel: impl Fn(usize) -> ([f32; 3], f32),
+) -> [Texel<S>; 4] {
+    let zero = S::f32s::splat(simd, 0.0);
+    let mut found = [Texel::<S> { color: V3::all(zero), opacity: zero }; 4];
+    let mut left = lanes;
+    while left != 0 {
+        let lane = left.trailing_zeros() as usize % S::u32s::LEN;
+        left &= left - 1;
+        for (places, found) in places.iter().zip(&mut found) {
+            let ([r, g, b], opacity) = texel(places[lane] as usize);
+            found.color.x.as_mut_slice()[lane] = r;
+            found.color.y.as_mut_slice()[lane] = g;
+            found.color.z.as_mut_slice()[lane] = b;
+            if OPACITY {
+                found.opacity.as_mut_slice()[lane] = opacity;
             }
         }
-        found
     }
+    found
+}
+
+/// The channels of a texel of 16 bits each.
+#[inline(always)]
+fn unpacked(texel: u64) -> [u16; 4] {
+    [texel as u16, (texel >> 16) as u16, (texel >> 32) as u16, (texel >> 48) as u16]
+}
+
+/// What a channel of 16 bits stands for.
+#[inline(always)]
+fn word_value(word: u16) -> f32 {
+    f32::from(word) / 65535.0
+}
+
+/// How channels of 8 bits are stored.
+fn bytes(encoding: Encoding) -> Coding<impl Fn(u8) -> f32, impl Fn(f32) -> u8> {
+    let decode = decode_table(encoding);
+    let encode = move |value: f32| match encoding {
+        Encoding::Color => linear_to_srgb(value),
+        Encoding::Data => (value * 255.0 + 0.5) as u8,
+    };
+    Coding { decode: |byte: u8| decode[usize::from(byte)], encode }
+}
+
+/// How channels of 16 bits are stored.
+fn words() -> Coding<impl Fn(u16) -> f32, impl Fn(f32) -> u16> {
+    Coding { decode: word_value, encode: |value: f32| (value * 65535.0 + 0.5) as u16 }
 }
 
 impl Level {
@@ -306,10 +382,10 @@ impl Level {
     }
 
     /// Puts rows in their places among all texels.
-    fn fill(&self, rows: &[[u8; 4]], texels: &mut [u32]) {
+    fn fill<T: Copy, P>(&self, rows: &[T], texels: &mut [P], pack: impl Fn(T) -> P) {
         for (y, row) in (0..).zip(rows.chunks_exact(self.width as usize)) {
             for (x, texel) in (0..).zip(row) {
-                texels[self.place(x, y)] = u32::from_le_bytes(*texel);
+                texels[self.place(x, y)] = pack(*texel);
             }
         }
     }
@@ -426,6 +502,23 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn data_of_16_bits_keep_them() {
+        let rows: Vec<[u16; 4]> = (0..15).map(|i| [40_000 + i, 3 * i, 65_535 - i, 65_535 - 256 * i]).collect();
+        let texels = Texels::of_words(5, 3, &rows, true).unwrap();
+        assert_eq!((texels.encoding(), texels.levels()), (Encoding::Data, 3));
+        for (i, row) in (0..15).zip(&rows) {
+            let (x, y) = (i % 5, i / 5);
+            assert_eq!(texels.texel(0, x, y), row.map(|word| (word >> 8) as u8));
+            let centre = [(x as f32 + 0.5) / 5.0, 1.0 - (y as f32 + 0.5) / 3.0];
+            for (found, expected) in sample(&texels, centre).into_iter().zip(row) {
+                assert!((found * 65535.0 - f32::from(*expected)).abs() < 0.05, "({x}, {y}): {found}");
+            }
+        }
+        assert_eq!(texels.bytes(), 2 * Texels::new(5, 3, &[[0; 4]; 15], Encoding::Data, true).unwrap().bytes());
+        assert_eq!(Texels::of_words(2, 2, &rows, true), None);
     }
 
     #[test]

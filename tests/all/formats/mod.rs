@@ -4,6 +4,7 @@ mod model;
 mod mutation;
 mod nff;
 mod obj;
+mod obj_damage;
 mod xml;
 
 use raywalk::render::{Film, Planes, Scratch, render_frame};

@@ -51,16 +51,16 @@ fn lights_without_a_colour_share_the_brightness() {
     assert_eq!(scene.lights[0].falloff, Falloff::None);
 }
 
-/// A wrong scene, the `§` where the error is, and words of its message.
+/// A scene that leaves no object, the `§` where its first fault is, and words of its message.
 const WRONG: &[(&str, &str)] = &[
-    ("s 0 0 0 1\n§sphere 0 0 0 1", "unknown entity \"sphere\""),
-    ("s 0 0 0 1\n §1 2 3", "unknown entity \"1\""),
+    ("§sphere 0 0 0 1", "unknown entity \"sphere\""),
+    ("l 0 0 1\n §1,5 2 3", "unknown entity \"1,5\""),
     ("s 0 0 §x 1", "expected a number (center), found \"x\""),
     ("s 0 0 0§", "the file ends before radius"),
     ("s 0 0 0 §0", "the radius is 0"),
     ("s 0 0 0 §1e39", "too large"),
     ("s 0 §nan 0 1", "expected a number"),
-    ("s 0 0 0\n§s 0 0 0 1", "expected a number (radius), found \"s\""),
+    ("s 0 0 0\n§l 0 0 1", "expected a number (radius), found \"l\""),
     ("# l\nf 1 §-1 1 1 0 1 0 0", "at least 0"),
     ("b 1 1 §-0.5", "at least 0"),
     ("§v from 0 0 1 at 0 0 0 angle 45", "the view lacks \"up\""),
@@ -87,6 +87,30 @@ fn every_wrong_scene_is_refused_with_its_place() {
         let SceneError::Invalid { place, message } = &error else { panic!("{text}: {error}") };
         assert!(message.contains(says), "{error}\n{text}");
         assert_eq!(place.line_column, Some((line, column)), "{error}\n{text}");
+    }
+}
+
+#[test]
+fn damaged_entities_cost_themselves_alone() {
+    let text = "v from 0 0 9 at 0 0 0 up 0 1 0 angle 45 resolution 512 0\nsphere 1 2 3\nl nan 0 0\nf 1 1 x 1 0 1 0 1\n\
+                s 0 0 0\ns 1 0 0 1\np 3 0 0 0\n 1 0 0\n 0 inf 0\np 3 0 0 0\n 1 0 0\n 0 1 0\nend s\ns 2 0 0 1";
+    let scene = load_nff(text).unwrap();
+    let kinds: Vec<&str> = scene.objects.iter().map(|object| object.kind).collect();
+    assert_eq!(kinds, ["sphere", "polygon", "sphere"]);
+    assert_eq!((scene.cameras.len(), scene.render.width, scene.lights.len()), (1, None, 0));
+    let warnings: Vec<String> = scene.warnings.iter().map(ToString::to_string).collect();
+    let expected = [
+        "s.nff:1:56: 0 is out of range; expected a whole number from 1 to 32768; the resolution is left out",
+        "s.nff:2:1: unknown entity \"sphere\"",
+        "s.nff:3:3: expected a number (light position), found \"nan\"; the entity l is left out",
+        "s.nff:4:7: expected a number (fill colour), found \"x\"; the entity f is left out",
+        "s.nff:6:1: expected a number (radius), found \"s\"; the entity s is left out",
+        "s.nff:9:4: expected a number (corner), found \"inf\"; the entity p is left out",
+        "s.nff:13:1: unknown entity \"end\"",
+    ];
+    assert_eq!(warnings.len(), expected.len(), "{warnings:#?}");
+    for (warning, expected) in warnings.iter().zip(expected) {
+        assert!(warning.contains(expected), "{warning}");
     }
 }
 

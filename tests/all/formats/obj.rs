@@ -3,9 +3,11 @@
 use super::picture;
 use crate::temporary::Folder;
 use glam::{Vec2, Vec3};
+use raywalk::render::{Film, Planes, Scratch, render_frame};
 use raywalk::scene::material::{Alpha, Model};
-use raywalk::scene::texture::{Texture, Wrap};
-use raywalk::scene::{LoadOptions, Material, Scene, SceneError, load};
+use raywalk::scene::texture::{Texture, Wrap, srgb_to_linear};
+use raywalk::scene::{Camera, LoadOptions, Material, Scene, SceneError, load};
+use raywalk::settings::Settings;
 
 fn load_obj(text: impl AsRef<[u8]>) -> Result<Scene, SceneError> {
     load(&Folder::new().write("s.obj", text), &LoadOptions::default())
@@ -26,6 +28,9 @@ fn warnings(scene: &Scene) -> Vec<String> {
 fn every_statement_becomes_what_it_says() {
     let folder = Folder::new();
     folder.write("every_statement.mtl", include_str!("every_statement.mtl"));
+    for name in ["bricks.png", "heights.png", "normals.png"] {
+        image::GrayImage::from_pixel(2, 2, image::Luma([128])).save(folder.write(name, "")).unwrap();
+    }
     let scene = load(&folder.write("s.obj", include_str!("every_statement.obj")), &LoadOptions::default()).unwrap();
     assert_eq!(scene.format, "OBJ");
     // The faces of an object with a material, one object for those with the same attributes.
@@ -65,21 +70,21 @@ fn every_statement_becomes_what_it_says() {
 
     let warnings = warnings(&scene);
     let told = ["mtl:19:1: Pr is not drawn", "s.obj:32:1: points, lines and faces of fewer than 3 corners: 3 left out"];
-    for told in told.into_iter().chain(["missing.png", "heights.png", "normals.png"]) {
+    for told in told {
         assert!(warnings.iter().any(|warning| warning.contains(told)), "{told}: {warnings:#?}");
     }
-    assert_eq!(warnings.len(), 5, "{warnings:#?}");
+    assert_eq!(warnings.len(), 2, "{warnings:#?}");
 }
 
 #[test]
 fn vertices_are_shared_and_colours_follow_them() {
-    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0 0.5 0 0\nf 1 2 3 4\nf 4 3 2\n";
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0 0.50196078 0 0\nf 1 2 3 4\nf 4 3 2\n";
     let scene = load_obj(text).unwrap();
     assert_eq!(scene.geometry.len(), 3);
     // Two of the triangles have the coloured corner.
     let colors = vertex_colors(&scene).concat();
-    let red = Vec3::new(0.5, 0.0, 0.0);
-    assert_eq!((colors.len(), colors.iter().filter(|color| **color == red).count()), (9, 2));
+    let red = Vec3::new(srgb_to_linear(128), 0.0, 0.0);
+    assert_eq!((colors.len(), colors.iter().filter(|color| color.abs_diff_eq(red, 1e-6)).count()), (9, 2));
     assert_eq!(colors.iter().filter(|color| **color == Vec3::ONE).count(), 7);
 }
 
@@ -88,9 +93,10 @@ fn vertex_colors(scene: &Scene) -> Vec<[Vec3; 3]> {
     scene.geometry.extras.iter().map(|(_, extras)| extras.colors.map(|color| color.truncate())).collect()
 }
 
-/// A wrong scene, the `§` where the error is, and words of its message.
+/// A scene that leaves no face, the `§` where its first fault is, and words of its message.
 const WRONG: &[(&str, &str)] = &[
     ("v 1 §x 3", "expected a number (position), found \"x\""),
+    ("v -§1,0 -1,0 0,0\nv 1,0 -1,0 0,0\nv 1,0 1,0 0,0\nf 1 2 3", "found \"-1,0\""),
     ("v 1 2§\nv 1 2 3", "the line ends before position"),
     ("v 1 2§", "the file ends before position"),
     ("v §nan 0 0", "expected a number"),
@@ -98,26 +104,28 @@ const WRONG: &[(&str, &str)] = &[
     ("v 0 0 §1e39", "too large"),
     ("vn 0 0 §", "ends before normal"),
     ("vt §a", "expected a number"),
-    ("v 0 0 0\nv 0 0 1\nf 1 2 §3", "index 3 names none of the 2 positions given so far"),
+    ("v 0 0 0\nv 0 0 1\nf 1 2 §3", "index 3 names none of the 2 positions of the file"),
     ("v 0 0 0\nf 1 §0 1", "index 0 names none"),
-    ("v 0 0 0\nf 1 1 §-2", "index -2 names none"),
+    ("v 0 0 0\nf 1 1 §-2", "index -2 names none of the 1 positions given so far"),
+    ("v 0 0 0\nf 1 1 §-1.5", "expected a corner such as"),
     ("v 0 0 0\nf 1 §9223372036854775807 1", "names none"),
     ("v 0 0 0\nf 1 §99999999999999999999 1", "expected a corner such as"),
-    ("v 0 0 0\nvt 0 0\nf 1 §1/2 1", "index 2 names none of the 1 texture coordinates"),
-    ("v 0 0 0\nvn 0 0 1\nf 1 §1//2 1", "index 2 names none of the 1 normals"),
-    ("v 0 0 0\nvt 0 0\nf 1 §/1 1", "expected a corner such as"),
+    ("v 0 0 0\nvt 0 0\nf §/1 1 1", "expected a corner such as"),
     ("v 0 0 0\nf 1 §1/// 1", "expected a corner such as"),
     ("v 0 0 0\nf 1 §a 1", "expected a corner such as"),
-    ("f §1 2 3\nv 0 0 0", "index 1 names none of the 0 positions"),
+    ("v 0 0 0\n§f 1 1", "a face of fewer than 3 corners"),
+    ("f 1 §2 3\nv 0 0 0", "index 2 names none of the 1 positions"),
+    ("§<!DOCTYPE html>\n<html>404</html>", "unknown statement \"<!DOCTYPE\""),
+    ("# made on an old Mac\rv 0 0 0\rv 1 §x 0\r", "found \"x\""),
 ];
 
 #[test]
-fn every_wrong_scene_is_refused_with_its_place() {
+fn texts_that_leave_no_face_are_refused_with_the_place_of_the_first_fault() {
     for (text, says) in WRONG {
         let text = text.replace("-§", "§-");
         let (before, after) = text.split_once('§').unwrap();
-        let line = 1 + before.matches('\n').count();
-        let column = 1 + before.rsplit('\n').next().unwrap().chars().count();
+        let line = 1 + before.matches(['\n', '\r']).count();
+        let column = 1 + before.rsplit(['\n', '\r']).next().unwrap().chars().count();
         let error = load_obj(format!("{before}{after}")).expect_err(&text);
         let SceneError::Invalid { place, message } = &error else { panic!("{text}: {error}") };
         assert!(message.contains(says), "{error}\n{text}");
@@ -160,27 +168,110 @@ fn corners_may_name_normals_where_there_are_none() {
     assert_eq!(scene.geometry.len(), 2);
     let told: Vec<String> = warnings(&scene);
     assert_eq!(told.len(), 2, "{told:?}");
-    assert!(told[0].contains("s.obj:4:3: a face names texture coordinates, but none are given"), "{told:?}");
+    assert!(told[0].contains("s.obj:4:3: a face names texture coordinates, but the file has none"), "{told:?}");
 }
 
 #[test]
 fn materials_follow_their_statements() {
     let one = |text: &str| load_mtl(&format!("newmtl m\n{text}")).materials.swap_remove(0);
+    let highlight = |text: &str| match one(text).model {
+        Model::Phong { specular, .. } => specular.x,
+        Model::MetallicRoughness { .. } => panic!("Phong's model"),
+    };
     let plain = one("");
     assert_eq!((plain.color.factor, plain.transparency, plain.ior), (Vec3::ONE, Vec3::ZERO, 1.0));
-    let Model::Phong { specular, .. } = plain.model else { panic!("Phong's model") };
-    assert_eq!(specular, Vec3::ZERO);
-    assert_eq!(one("Tr 0.25").transparency, Vec3::splat(0.25));
-    assert_eq!(one("Tr 1").transparency, Vec3::ZERO, "nothing would be seen");
-    assert_eq!(one("Tr 1\nd 0.5").transparency, Vec3::splat(0.5), "d outranks Tr");
-    assert_eq!(one("d -halo 0.5").transparency, Vec3::splat(0.5));
-    assert_eq!(one("d 7").transparency, Vec3::ZERO);
-    assert_eq!(one("Tf 0 1 0").color.factor, Vec3::ONE, "Tf colours what is transparent");
+    assert_eq!(highlight(""), 0.0);
     assert_eq!(one("Ks 2 0.5 0\nillum 3").reflectivity, Vec3::new(1.0, 0.5, 0.0));
     assert_eq!(one("KD 0.5").color.factor, Vec3::splat(0.5));
-    assert_eq!(one("map_Ke a.png").emission.factor, Vec3::ONE);
-    assert!(one("map_Bump -bm 0.5 wall_normal.png").relief.normal.is_some_and(|map| map.scale == 0.5));
-    assert!(one("map_Bump wall.png").relief.bump.is_some());
+    assert_eq!(one("Kd 255 51 0").color.factor, Vec3::new(1.0, 0.2, 0.0));
+    // Models without a highlight, and one as wide as all that light falls on.
+    assert_eq!(
+        ["", "illum 0", "illum 1", "illum 2", "Ns 0", "Ns 5"].map(|text| highlight(&format!("Ks 1\n{text}"))),
+        [1.0, 0.0, 0.0, 1.0, 0.0, 0.5]
+    );
+    // Of maps that are missing, nothing glows and nothing is bent.
+    let bare = one("map_Ke a.png\nnorm n.png\nmap_Bump b.png");
+    assert_eq!((bare.emission.factor, bare.emission.texture), (Vec3::ZERO, None));
+    assert_eq!((bare.relief.normal, bare.relief.bump), (None, None));
+}
+
+#[test]
+fn opacity_blends_and_only_filters_tint() {
+    let one = |text: &str| load_mtl(&format!("newmtl m\nKd 0 0 1\n{text}")).materials.swap_remove(0);
+    for (text, opacity) in [
+        ("Tr 0.25", 0.75),
+        ("Tr 1\nd 0.5", 0.5),
+        ("d -halo 0.5", 0.5),
+        ("d 0", 0.0),
+        ("d 0.5\nTf 1 1 1", 0.5),
+        ("d 0.5\nTf 0 0 0", 0.5),
+        ("d 0.5\nNi 1.5\nillum 4", 0.5),
+    ] {
+        let blended = one(text);
+        assert_eq!(
+            (blended.alpha, blended.opacity, blended.transparency),
+            (Alpha::Blend, opacity, Vec3::ZERO),
+            "{text}"
+        );
+        assert_eq!(blended.color.factor, Vec3::Z, "{text}");
+    }
+    for text in ["d 7", "Tr 1", "Tf 0 1 0", "d nan", "Tr -1.#IND"] {
+        let opaque = one(text);
+        assert_eq!((opaque.alpha, opaque.opacity), (Alpha::Opaque, 1.0), "{text}");
+    }
+    let filter = one("d 0.25\nTf 0.5 1 1");
+    assert_eq!((filter.color.factor, filter.transparency), (Vec3::new(0.5, 1.0, 1.0), Vec3::splat(0.75)));
+    assert!(filter.is_thin() && !filter.fresnel);
+    let glass = one("d 0.25\nNi 1.5\nillum 7");
+    assert_eq!((glass.color.factor, glass.transparency), (Vec3::ONE, Vec3::splat(0.75)));
+    assert!(!glass.is_thin() && glass.fresnel);
+    let Model::Phong { diffuse, .. } = glass.model else { panic!("Phong's model") };
+    assert_eq!(diffuse, Vec3::Z);
+}
+
+/// Red behind a square of a material.
+fn before_red(folder: &Folder, library: &str) -> [f32; 3] {
+    folder.write("s.mtl", format!("newmtl back\nKd 1 0 0\nnewmtl m\n{library}"));
+    let text = "mtllib s.mtl\nv -2 -1 0\nv 2 -1 0\nv 2 1 0\nv -2 1 0\nv -4 -3 -1\nv 4 -3 -1\nv 4 3 -1\nv -4 3 -1\n\
+                vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl back\nf 5 6 7 8\nusemtl m\nf 1/1 2/2 3/3 4/4";
+    let scene = load(&folder.write("s.obj", text), &LoadOptions::default()).unwrap();
+    let off_the_diagonal = Vec3::new(0.25, -0.25, 0.0);
+    let eye = off_the_diagonal + Vec3::Z * 4.0;
+    let camera = Camera { eye, look_at: off_the_diagonal, ..Camera::default() };
+    let mut film = Film::new(3, 3, Planes::default());
+    render_frame(&scene, &camera, &Settings::exact(), &mut Scratch::default(), &mut film);
+    film.color(1, 1).into()
+}
+
+#[test]
+fn what_lies_behind_shows_by_the_opacity_alone() {
+    let folder = Folder::new();
+    let [all, none, _] = before_red(&folder, "d 0");
+    assert!(all > 0.5 && none == 0.0, "{all} {none}");
+    let is = |library: &str, expected: [f32; 3]| {
+        let found = before_red(&folder, library);
+        let near = found.iter().zip(expected).all(|(found, expected)| (found - expected * all).abs() < 0.02);
+        assert!(near, "{library}: {found:?}, not {expected:?} of {all}");
+    };
+    is("Kd 0 0 0\nd 0.2", [0.8, 0.0, 0.0]);
+    is("Kd 0 0 1\nd 0.2", [0.8, 0.0, 0.2]);
+    is("Kd 0 0 1\nTr 0.4", [0.4, 0.0, 0.6]);
+    // The light at the eye passes the filter, too.
+    is("Kd 0 0 1\nd 0.6\nTf 0.5 1 0", [0.04, 0.0, 0.6]);
+    for (name, opacity) in [("a", 102), ("b", 153)] {
+        let image = image::RgbaImage::from_pixel(4, 4, image::Rgba([0, 0, 255, opacity]));
+        image.save(folder.write(&format!("{name}.png"), "")).unwrap();
+    }
+    is("map_Kd a.png\nmap_d a.png", [0.6, 0.0, 0.4]);
+    is("Kd 0 0 0\nmap_Kd b.png\nmap_d b.png", [0.4, 0.0, 0.6]);
+    is("map_Kd a.png\nmap_d a.png\nd 0", [0.6, 0.0, 0.4]);
+    is("map_Kd a.png\nmap_d a.png\nd 0.5", [0.8, 0.0, 0.2]);
+    is("Kd 0 1 0\nmap_d a.png", [0.6, 0.4, 0.0]);
+    // The colours of one file, the opacities of another; where those are damaged, the colours remain.
+    is("map_Kd a.png\nmap_d b.png", [0.4, 0.0, 0.6]);
+    folder.write("broken.png", "no image");
+    image::RgbImage::from_pixel(4, 4, image::Rgb([0, 0, 255])).save(folder.write("blue.png", "")).unwrap();
+    is("map_Kd blue.png\nmap_d broken.png", [0.0, 0.0, 1.0]);
 }
 
 #[test]
@@ -281,22 +372,30 @@ fn what_an_opacity_map_leaves_out_is_not_there() {
         assert!((whole * 4 / 10..whole * 6 / 10).contains(&rest), "{library}: {rest} of {whole}");
     }
     assert_eq!(seen("map_Kd green.png\nmap_d none.png").0, Alpha::Opaque);
-    // Opacity alone darkens nothing.
-    let grey = image::GrayImage::from_pixel(2, 2, image::Luma([160]));
-    grey.save(folder.write("grey.png", "")).unwrap();
-    folder.write("s.mtl", "newmtl a\nKd 0 1 0\nmap_d grey.png");
-    let masked = picture(&load(&obj, &LoadOptions::default()).unwrap(), 16, 16);
-    folder.write("s.mtl", "newmtl a\nKd 0 1 0\n");
-    assert_eq!(masked, picture(&load(&obj, &LoadOptions::default()).unwrap(), 16, 16));
 }
 
 #[test]
-fn a_missing_image_is_shown_as_magenta_squares() {
+fn a_missing_colour_is_shown_as_grey_squares() {
     let folder = Folder::new();
-    folder.write("s.mtl", "newmtl a\nmap_Kd none.png\n");
-    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4";
-    let scene = load(&folder.write("s.obj", format!("mtllib s.mtl\n{square}")), &LoadOptions::default()).unwrap();
-    assert!(picture(&scene, 32, 18).iter().any(|[red, green, blue]| *red > 100 && *green < 20 && *blue > 100));
+    let square = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4";
+    let obj = folder.write("s.obj", format!("mtllib s.mtl\n{square}"));
+    for (library, told) in [
+        ("newmtl a\nKd 0 0 0\nmap_Kd none.png", "cannot read image \"none.png\""),
+        ("newmtl a\nmap_Kd s.mtl", "cannot decode image \"s.mtl\""),
+    ] {
+        folder.write("s.mtl", library);
+        let scene = load(&obj, &LoadOptions::default()).unwrap();
+        let warnings = warnings(&scene);
+        assert!(warnings[0].contains(told) && warnings[0].ends_with("a placeholder is shown"), "{warnings:?}");
+        let [Texture::Checker { size, .. }] = scene.textures[..] else { panic!("squares") };
+        assert_eq!(size, 0.25, "of a metre");
+        let picture = picture(&scene, 32, 18);
+        let [low, high] = [u8::MIN, u8::MAX].map(|start| {
+            let shown = picture.iter().filter(|pixel| **pixel != [0; 3]);
+            shown.fold(255 - start, |kept, pixel| if start == 0 { kept.min(pixel[0]) } else { kept.max(pixel[0]) })
+        });
+        assert!(high - low >= 8 && high < 200 && picture.iter().all(|[r, g, b]| r == g && g == b), "{low} {high}");
+    }
 }
 
 /// A Zstandard frame of one raw block (RFC 8878) that holds a text shorter than 256 bytes.

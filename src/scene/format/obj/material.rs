@@ -3,7 +3,7 @@
 //! A statement that makes no sense is a warning and is left out. `Ka` is read and left: many programs write 1 for every
 //! material, which would drown all shading where a scene has ambient light.
 
-use super::map::{self, Map, Textures};
+use super::map::{self, Map, Textures, left_out, paths};
 use super::statement::{Statement, statements};
 use crate::scene::desc::MaterialDesc;
 use crate::scene::desc::map::shortened;
@@ -14,10 +14,20 @@ use std::collections::HashSet;
 
 /// Height of a bump map of `-bm 1`, in texture coordinates: what JSON's `bump` has where it gives none.
 const BUMP_HEIGHT: f32 = 0.01;
-/// Opacity below which `map_d` leaves a hole.
+/// Opacity below which `map_d` leaves a hole, where it is no more than that.
 const HOLE: f32 = 0.5;
+/// Models of illumination below this one have no highlight.
+const FIRST_HIGHLIGHT: f64 = 2.0;
 /// Models of illumination from this one on have mirrors.
 const FIRST_MIRROR: f64 = 3.0;
+/// Models of illumination that bend light, without and with Fresnel's equations.
+const REFRACTING: [f64; 2] = [6.0, 7.0];
+/// Shininess below which a highlight fades: at 0, where many programs mean none, it would cover all that light falls on.
+const BROADEST: f32 = 10.0;
+/// Least share of the light that a filter passes.
+const LEAST_PASSED: Vec3 = Vec3::splat(1.0 / 1024.0);
+/// Colours from this one on go from 0 to 255.
+const BRIGHTEST: f32 = 2.0;
 
 /// Statements that many programs write and that are left without a word: how a material looks elsewhere.
 const WITHOUT_EFFECT: [&str; 5] = ["Ka", "map_Ka", "sharpness", "map_aat", "Km"];
@@ -43,14 +53,19 @@ pub fn read(
             warnings.push(statement.at, format!("{} stands before the first newmtl", statement.shown()));
             continue;
         };
-        match draft.statement(&statement, folder, &mut has_file) {
+        let mut odd = Vec::new();
+        let read = draft.statement(&statement, folder, &mut has_file, &mut odd);
+        for problem in odd {
+            warnings.push(problem.at, problem.message);
+        }
+        match read {
             Ok(true) => {}
             Ok(false) => {
                 if unknown.len() < Warnings::KEPT && unknown.insert(statement.keyword.to_vec()) {
                     warnings.push(statement.at, format!("{} is not drawn", statement.shown()));
                 }
             }
-            Err(problem) => warnings.push(problem.at, format!("{}; it is left out", problem.message)),
+            Err(problem) => warnings.push(problem.at, left_out(problem).message),
         }
     }
     materials.extend(draft.map(|draft| draft.finish(textures)));
@@ -70,7 +85,7 @@ struct Draft {
     /// `d`, and what `Tr` says in its place.
     opacity: Option<f32>,
     opacity_by_tr: Option<f32>,
-    illumination: f64,
+    illumination: Option<f64>,
     diffuse_map: Option<Map>,
     emission_map: Option<Map>,
     opacity_map: Option<Map>,
@@ -89,11 +104,13 @@ impl Draft {
         statement: &Statement,
         folder: &str,
         has_file: &mut impl FnMut(&str) -> bool,
+        odd: &mut Vec<Problem>,
     ) -> Outcome<bool> {
-        let mut map = || map::read(statement).map(|map| found(map, folder, &mut *has_file));
+        let find = |name: &str| paths(name, folder).into_iter().find(|path| has_file(path));
+        let map = || map::read(statement, find, odd);
         // Programs do not agree on capitals.
         match &*statement.keyword.to_ascii_lowercase() {
-            b"kd" => self.diffuse = Some(color(statement)?),
+            b"kd" => self.diffuse = Some(diffuse(statement, odd)?),
             b"ks" => self.specular = Some(color(statement)?),
             b"ke" => self.emission = Some(color(statement)?),
             b"tf" => self.filter = Some(color(statement)?),
@@ -102,7 +119,7 @@ impl Draft {
             b"d" => self.opacity = Some(number(statement)?),
             // Some programs write an opacity here; 1 can only be one, since nothing would be seen.
             b"tr" => self.opacity_by_tr = Some(1.0 - number(statement)?).filter(|opacity| *opacity > 0.0),
-            b"illum" => self.illumination = f64::from(number(statement)?),
+            b"illum" => self.illumination = Some(f64::from(number(statement)?)),
             b"map_kd" => self.diffuse_map = Some(map()?),
             b"map_ke" => self.emission_map = Some(map()?),
             b"map_d" => {
@@ -124,51 +141,87 @@ impl Draft {
     }
 
     fn finish(self, textures: &mut Textures) -> MaterialDesc {
-        let opacity = self.opacity.or(self.opacity_by_tr).unwrap_or(1.0).clamp(0.0, 1.0);
-        let transparency = Vec3::splat(1.0 - opacity);
-        let is_transparent = transparency != Vec3::ZERO;
         let specular = self.specular.unwrap_or(Vec3::ZERO);
-        let (alpha, color_map) = match (self.diffuse_map, self.opacity_map) {
-            (map, None) => (Alpha::Opaque, map.map(|map| textures.lookup(map))),
-            // One image for both has an opacity of its own.
-            (Some(map), Some(holes)) if map.file == holes.file => (Alpha::Mask(HOLE), Some(textures.lookup(map))),
-            (Some(map), Some(holes)) => (Alpha::Mask(HOLE), Some(textures.masked(map, holes.file))),
-            (None, Some(holes)) => (Alpha::Mask(HOLE), Some(textures.opacity(holes))),
-        };
+        let shininess = self.shininess.unwrap_or(MaterialDesc::SHININESS);
+        let mirrors = self.illumination.is_some_and(|model| model >= FIRST_MIRROR);
+        let has_highlight = self.illumination.is_none_or(|model| model >= FIRST_HIGHLIGHT);
+        let highlight = if has_highlight { specular * (shininess / BROADEST).min(1.0) } else { Vec3::ZERO };
         let mut scaled = |map: Map, scale: f32| Scaled { scale: map.bump * scale, lookup: textures.lookup(map) };
         let relief = Relief {
             normal: self.normal_map.map(|map| scaled(map, 1.0)),
             bump: self.bump_map.map(|map| scaled(map, BUMP_HEIGHT)),
             parallax: None,
         };
-        let factor = match (self.filter, self.diffuse) {
-            (Some(filter), _) if is_transparent => filter,
-            (_, diffuse) => diffuse.unwrap_or(Vec3::ONE),
+        // Who gives an image, and black or nothing beside it, means the image.
+        let beside = |map: &Option<Map>, factor: Option<Vec3>| match (map, factor.filter(|color| *color != Vec3::ZERO))
+        {
+            (None, _) => factor,
+            (Some(_), factor) => factor.or(Some(Vec3::ONE)),
         };
-        // Who gives an image of what glows, and black or nothing beside it, means the image.
-        let glow = self.emission.filter(|glow| *glow != Vec3::ZERO);
-        let no_glow = if self.emission_map.is_some() { Vec3::ONE } else { Vec3::ZERO };
-        MaterialDesc {
+        let glow = beside(&self.emission_map, self.emission).unwrap_or(Vec3::ZERO);
+        let diffuse = beside(&self.diffuse_map, self.diffuse).unwrap_or(Vec3::ONE);
+        // Nothing would be seen of a map of opacities.
+        let opacity = self.opacity.or(self.opacity_by_tr).unwrap_or(1.0).clamp(0.0, 1.0);
+        let opacity = if self.opacity_map.is_some() && opacity == 0.0 { 1.0 } else { opacity };
+        let is_plain = self.diffuse_map.is_none() && self.opacity_map.is_none();
+        let alpha = match &self.opacity_map {
+            _ if opacity < 1.0 => Alpha::Blend,
+            Some(_) => Alpha::Mask(HOLE),
+            None => Alpha::Opaque,
+        };
+        let color_map = match (self.diffuse_map, self.opacity_map) {
+            (map, None) => map.map(|map| textures.lookup(map)),
+            // One image for both has an opacity of its own.
+            (Some(map), Some(holes)) => Some(textures.masked(map, holes.file)),
+            (None, Some(holes)) => Some(textures.opacity(holes)),
+        };
+        let material = MaterialDesc {
             name: self.name,
-            color: ColorSource { factor, texture: color_map },
+            color: ColorSource { factor: diffuse, texture: color_map },
             model: Model::Phong {
                 ambient: MaterialDesc::AMBIENT,
                 diffuse: MaterialDesc::DIFFUSE,
-                specular,
-                shininess: self.shininess.unwrap_or(MaterialDesc::SHININESS),
+                specular: highlight,
+                shininess,
             },
-            emission: ColorSource {
-                factor: glow.unwrap_or(no_glow),
-                texture: self.emission_map.map(|map| textures.lookup(map)),
-            },
-            reflectivity: if self.illumination >= FIRST_MIRROR { specular.min(Vec3::ONE) } else { Vec3::ZERO },
-            transparency,
+            emission: ColorSource { factor: glow, texture: self.emission_map.map(|map| textures.lookup(map)) },
+            reflectivity: if mirrors { specular.min(Vec3::ONE) } else { Vec3::ZERO },
             ior: self.ior.filter(|ior| *ior > 0.0).unwrap_or(1.0),
-            fresnel: is_transparent,
             alpha,
+            opacity,
             relief,
             ..MaterialDesc::default_phong()
+        };
+        // Many programs write a filter of 0 for every material.
+        let filter = self.filter.filter(|filter| *filter != Vec3::ZERO).unwrap_or(Vec3::ONE);
+        let refracts = material.ior != 1.0 && self.illumination.is_some_and(|model| REFRACTING.contains(&model));
+        match alpha == Alpha::Blend && is_plain && (refracts || filter != Vec3::ONE) {
+            true => passing(material, filter, refracts),
+            false => material,
         }
+    }
+}
+
+/// A material of one colour that lets `filter` of the light pass, as far as it is not opaque: straight, or bent as in glass.
+fn passing(material: MaterialDesc, filter: Vec3, refracts: bool) -> MaterialDesc {
+    // Its colour is that of the light that passes; divided by it, the surface's own comes out as it is.
+    let filter = filter.clamp(LEAST_PASSED, Vec3::ONE);
+    let own = material.color.factor / filter;
+    let model = match material.model {
+        Model::Phong { ambient, diffuse, specular, shininess } => {
+            Model::Phong { ambient: ambient * own, diffuse: diffuse * own, specular, shininess }
+        }
+        other => other,
+    };
+    MaterialDesc {
+        color: ColorSource::constant(filter),
+        model,
+        transparency: Vec3::splat(1.0 - material.opacity),
+        fresnel: refracts,
+        thin: !refracts,
+        alpha: Alpha::Opaque,
+        opacity: 1.0,
+        ..material
     }
 }
 
@@ -187,6 +240,16 @@ fn color(statement: &Statement) -> Outcome<Vec3> {
     }
 }
 
+/// `Kd r g b`, which some programs write from 0 to 255.
+fn diffuse(statement: &Statement, odd: &mut Vec<Problem>) -> Outcome<Vec3> {
+    let color = color(statement)?;
+    if color.max_element() <= BRIGHTEST {
+        return Ok(color);
+    }
+    odd.push(Problem::new(statement.at, "Kd is above 1; it is taken as numbers from 0 to 255"));
+    Ok(color / 255.0)
+}
+
 /// `Ns 50`, or `d -halo 0.5`.
 fn number(statement: &Statement) -> Outcome<f32> {
     let mut words = statement.words.clone();
@@ -201,16 +264,4 @@ fn is_normal_map(file: &str) -> bool {
     let name = file.rsplit('/').next().unwrap_or(file).to_lowercase();
     let stem = name.rsplit_once('.').map_or(&*name, |(stem, _)| stem);
     ["norm", "nrm", "ddn"].iter().any(|part| stem.contains(part)) || stem.ends_with("_n")
-}
-
-/// Programs write paths of the machine they ran on, or from the library's folder; an image of that name there or beside
-/// the scene will do.
-fn found(mut map: Map, folder: &str, mut has_file: impl FnMut(&str) -> bool) -> Map {
-    let alone = map.file.rsplit('/').next().unwrap_or_default();
-    let within = |name: &str| if folder.is_empty() { name.to_owned() } else { format!("{folder}/{name}") };
-    let mut places = [map.file.clone(), within(&map.file), alone.to_owned(), within(alone)];
-    if let Some(place) = places.iter_mut().find(|place| has_file(place)) {
-        map.file = std::mem::take(place);
-    }
-    map
 }

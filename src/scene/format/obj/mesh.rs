@@ -1,13 +1,16 @@
-//! Vertices and faces: a mesh for each run of faces of one object or group and one material.
+//! Faces: a mesh for each run of those of one object or group and one material.
 
+use super::smooth::SmoothNormals;
 use super::statement::{Statement, statements};
+use super::vertices::{self, Budget, Vertices};
 use super::weld::{Corner, Weld};
 use crate::scene::desc::problem::{At, Outcome, Problem, Warnings};
 use crate::scene::desc::{MeshDesc, NameRef, ObjectDesc, ShapeDesc};
-use crate::scene::format::polygon::Cutter;
+use crate::scene::format::faults::Faults;
+use crate::scene::format::polygon::{Cutter, area_vector};
 use crate::scene::format::words::{Word, Words};
 use crate::scene::limits::{Limits, exceeded};
-use glam::{DVec2, DVec3, Vec4};
+use glam::{DVec3, Vec4};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -21,24 +24,31 @@ pub struct Meshes {
 }
 
 /// Reads the statements of a file.
-pub fn read(text: &[u8], limits: &Limits, warnings: &mut Warnings) -> Outcome<Meshes> {
-    let mut reader = Reader::new(limits, warnings);
+///
+/// # Errors
+/// A limit that is exceeded, or the first fault of a text that leaves no face.
+pub fn read(text: &[u8], limits: &Limits, faults: &mut Faults) -> Outcome<Meshes> {
+    let mut budget = Budget::of(limits);
+    let vertices = vertices::read(text, &mut budget, faults)?;
+    let mut reader = Reader::new(limits, &vertices, budget, faults);
     for statement in statements(text) {
         reader.statement(&statement)?;
     }
     reader.finish_group();
-    reader.cutter.warn(reader.warnings);
+    reader.cutter.warn(&mut reader.faults.warnings);
     if reader.left_out > 0 {
         let message = format!("points, lines and faces of fewer than 3 corners: {} left out", reader.left_out);
-        reader.warnings.push(reader.first_left_out, message);
+        reader.faults.warnings.push(reader.first_left_out, message);
     }
-    Ok(reader.meshes)
+    match reader.faults.first() {
+        Some(fault) if reader.triangles == 0 => Err(fault),
+        _ => Ok(reader.finish()),
+    }
 }
 
-/// Statements that say nothing about what a ray tracer sees of polygons: smoothing groups, levels of detail, hints to
+/// Statements that say nothing about what a ray tracer sees of polygons: merging groups, levels of detail, hints to
 /// renderers, and values that only free-form surfaces use.
-const WITHOUT_EFFECT: [&str; 23] = [
-    "s",
+const WITHOUT_EFFECT: [&str; 22] = [
     "mg",
     "lod",
     "bevel",
@@ -63,6 +73,17 @@ const WITHOUT_EFFECT: [&str; 23] = [
     "end",
 ];
 
+/// Where the normals of a mesh come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Normals {
+    /// From nowhere: it is flat.
+    None,
+    /// From the file.
+    Given,
+    /// From its smoothing groups.
+    Smooth,
+}
+
 /// A mesh under construction.
 #[derive(Debug)]
 struct Open {
@@ -72,28 +93,34 @@ struct Open {
     name: Option<String>,
     material: Option<NameRef>,
     mesh: MeshDesc,
+    /// Where among the smooth normals that of each vertex is.
+    smooth: Vec<u32>,
 }
 
 /// What faces must have in common to be of one mesh of a group.
-type Key = (Option<String>, bool, bool);
+type Key = (Option<String>, bool, Normals);
 
 struct Reader<'a> {
     limits: &'a Limits,
-    warnings: &'a mut Warnings,
-    positions: Vec<DVec3>,
-    /// One a position from the first that has a colour on, or none at all.
-    colors: Vec<Vec4>,
-    uvs: Vec<DVec2>,
-    normals: Vec<DVec3>,
-    meshes: Meshes,
+    vertices: &'a Vertices,
+    budget: Budget,
+    faults: &'a mut Faults,
+    /// How many positions, texture coordinates and normals stand before the statement at hand.
+    before: [usize; 3],
+    libraries: Vec<NameRef>,
     /// Of the objects or groups to come.
     name: Option<String>,
     material: Option<NameRef>,
+    /// The smoothing group of the faces to come.
+    smoothing: Option<i64>,
+    smooth_normals: SmoothNormals,
+    /// The meshes of the groups that were read.
+    whole: Vec<Open>,
     /// The meshes of the group being read, and where each is by what its faces have in common.
     open: Vec<Open>,
     places: HashMap<Key, usize>,
     /// Where the faces of the statements at hand go, as long as neither group nor material changes.
-    current: [[Option<usize>; 2]; 2],
+    current: [[Option<usize>; 3]; 2],
     weld: Weld,
     meshes_begun: u32,
     triangles: u64,
@@ -106,26 +133,26 @@ struct Reader<'a> {
     first_left_out: At,
     unknown: HashSet<Vec<u8>>,
     /// What statements have named as material libraries.
-    libraries: HashSet<String>,
-    /// Vertices, corners of faces, and what they carry, that may still be read.
-    elements_left: u64,
+    named_libraries: HashSet<String>,
 }
 
 impl<'a> Reader<'a> {
-    fn new(limits: &'a Limits, warnings: &'a mut Warnings) -> Self {
+    fn new(limits: &'a Limits, vertices: &'a Vertices, budget: Budget, faults: &'a mut Faults) -> Self {
         Self {
             limits,
-            warnings,
-            positions: Vec::new(),
-            colors: Vec::new(),
-            uvs: Vec::new(),
-            normals: Vec::new(),
-            meshes: Meshes::default(),
+            vertices,
+            budget,
+            faults,
+            before: [0; 3],
+            libraries: Vec::new(),
             name: None,
             material: None,
+            smoothing: None,
+            smooth_normals: SmoothNormals::default(),
+            whole: Vec::new(),
             open: Vec::new(),
             places: HashMap::new(),
-            current: [[None; 2]; 2],
+            current: [[None; 3]; 2],
             weld: Weld::default(),
             meshes_begun: 0,
             triangles: 0,
@@ -135,126 +162,152 @@ impl<'a> Reader<'a> {
             left_out: 0,
             first_left_out: At(0),
             unknown: HashSet::new(),
-            libraries: HashSet::new(),
-            elements_left: limits.vertices,
+            named_libraries: HashSet::new(),
         }
     }
 
     fn statement(&mut self, statement: &Statement) -> Outcome<()> {
-        let Statement { at, keyword, mut words, .. } = statement.clone();
+        let Statement { at, keyword, words, .. } = statement.clone();
         match keyword {
-            b"v" => {
-                self.take(at, 1)?;
-                self.position(&mut words)?;
-            }
-            b"vt" => {
-                self.take(at, 1)?;
-                self.uv(&mut words)?;
-            }
-            b"vn" => {
-                self.take(at, 1)?;
-                self.normals.push(DVec3::from_array(words.numbers("normal")?));
-            }
-            b"f" | b"fo" => self.face(at, words)?,
-            b"o" | b"g" => {
+            b"v" | b"V" => self.before[0] += 1,
+            b"vt" | b"VT" => self.before[1] += 1,
+            b"vn" | b"VN" => self.before[2] += 1,
+            b"f" | b"F" | b"fo" => self.face(at, words)?,
+            b"s" | b"S" => self.smoothing(at, words),
+            b"o" | b"g" | b"O" | b"G" => {
                 self.finish_group();
                 self.name = Some(statement.name()).filter(|name| !name.is_empty());
             }
             b"usemtl" => {
-                self.current = [[None; 2]; 2];
+                self.current = [[None; 3]; 2];
                 self.material =
                     Some(NameRef { name: statement.name(), at }).filter(|material| !material.name.is_empty());
             }
             b"mtllib" => {
                 let name = statement.name();
-                if self.libraries.insert(name.clone()) {
-                    self.meshes.libraries.push(NameRef { name, at });
+                if self.named_libraries.insert(name.clone()) {
+                    self.libraries.push(NameRef { name, at });
                 }
             }
             b"p" | b"l" | b"curv" | b"curv2" | b"surf" => self.leave_out(at),
             _ if WITHOUT_EFFECT.iter().any(|known| known.as_bytes() == keyword) => {}
             _ => {
                 if self.unknown.len() < Warnings::KEPT && self.unknown.insert(keyword.to_vec()) {
-                    self.warnings.push(at, format!("unknown statement \"{}\" is ignored", statement.shown()));
+                    let message = format!("unknown statement \"{}\" is ignored", statement.shown());
+                    self.faults.add(Problem::new(at, message.clone()), message);
                 }
             }
         }
         Ok(())
     }
 
-    /// Takes `count` vertices or corners from what a file may ask for.
-    fn take(&mut self, at: At, count: u64) -> Outcome<()> {
-        let left = self.elements_left.checked_sub(count);
-        let message = || format!("vertices and corners: {}", exceeded("vertices", self.limits.vertices));
-        self.elements_left = left.ok_or_else(|| Problem::new(at, message()))?;
-        Ok(())
-    }
-
-    /// `v x y z`, with a weight that only free-form surfaces use, or with red, green and blue.
-    fn position(&mut self, words: &mut Words) -> Outcome<()> {
-        self.positions.push(DVec3::from_array(words.numbers("position")?));
-        let mut more = words.clone();
-        if more.nth(1).is_some() {
-            let color = DVec3::from_array(words.numbers("vertex colour")?).as_vec3();
-            self.colors.resize(self.positions.len() - 1, Vec4::ONE);
-            self.colors.push(color.max(glam::Vec3::ZERO).extend(1.0));
-        } else if !self.colors.is_empty() {
-            self.colors.push(Vec4::ONE);
-        }
-        Ok(())
-    }
-
-    /// `vt u`, `vt u v` or `vt u v w`.
-    fn uv(&mut self, words: &mut Words) -> Outcome<()> {
-        let u = words.number("texture coordinate")?;
-        let v = words.next().map_or(Ok(0.0), |word| word.number())?;
-        self.uvs.push(DVec2::new(u, v));
-        Ok(())
+    /// `s 1`, `s off` or `s 0`.
+    fn smoothing(&mut self, at: At, mut words: Words) {
+        let word = words.next().map(|word| word.bytes.to_ascii_lowercase()).unwrap_or_default();
+        self.smoothing = match (&*word, str::from_utf8(&word).ok().and_then(|word| word.parse().ok())) {
+            (b"off" | b"null", _) | (_, Some(0)) => None,
+            (b"on", _) => Some(1),
+            (_, Some(group)) => Some(group),
+            (_, None) => {
+                self.faults.add_plain(at, "a smoothing group that is no number; the faces in it are flat");
+                None
+            }
+        };
     }
 
     fn face(&mut self, at: At, words: Words) -> Outcome<()> {
         self.corners.clear();
-        for word in words {
-            let corner = self.corner(word)?;
-            self.corners.push(corner);
+        let read = self.read_corners(words);
+        self.budget.take(at, self.corners.len() as u64)?;
+        if let Err(problem) = read {
+            self.faults.add(problem, "a face with a corner that is none; it is left out");
+            return Ok(());
         }
-        self.take(at, self.corners.len() as u64)?;
         if self.corners.len() < 3 {
+            let message = "a face of fewer than 3 corners";
+            self.faults.note(Problem::new(at, message));
             self.leave_out(at);
             return Ok(());
         }
+        self.outline.clear();
+        self.outline.extend(self.corners.iter().map(|corner| self.vertices.positions[corner.position as usize]));
+        if !self.outline.iter().all(|position| position.is_finite()) {
+            // Warned of where the position stands.
+            return Ok(());
+        }
         let has_uvs = self.corners.iter().all(|corner| corner.uv.is_some());
-        let is_normal = |index: u32| self.normals[index as usize].try_normalize().is_some();
+        let is_normal = |index: u32| self.vertices.normals[index as usize].try_normalize().is_some();
         let has_normals = self.corners.iter().all(|corner| corner.normal.is_some_and(is_normal));
         for corner in &mut self.corners {
             corner.uv = corner.uv.filter(|_| has_uvs);
             corner.normal = corner.normal.filter(|_| has_normals);
         }
-        let place = self.mesh(at, has_uvs, has_normals)?;
-        self.outline.clear();
-        self.outline.extend(self.corners.iter().map(|corner| self.positions[corner.position as usize]));
+        let normals = match self.smoothing {
+            _ if has_normals => Normals::Given,
+            Some(group) => {
+                self.smooth(group);
+                Normals::Smooth
+            }
+            None => Normals::None,
+        };
+        let place = self.mesh(at, has_uvs, normals)?;
         let triangles = self.cutter.cut(&self.outline);
         self.triangles += triangles.len() as u64;
         if self.triangles > self.limits.primitives {
             return Err(Problem::new(at, format!("triangles: {}", exceeded("primitives", self.limits.primitives))));
         }
-        let Open { number, mesh, .. } = &mut self.open[place];
+        let Vertices { positions, colors, uvs, normals: given } = self.vertices;
+        let Open { number, mesh, smooth, .. } = &mut self.open[place];
         for triangle in triangles {
             let vertices = triangle.map(|i| {
                 let corner = self.corners[i as usize];
                 self.weld.vertex(*number, corner, || {
-                    if let Some(color) = self.colors.get(corner.position as usize) {
-                        // Vertices from before the first colour of the file have none.
+                    if let Some(color) = colors.get(corner.position as usize) {
+                        // Vertices after the last colour of the file have none.
                         mesh.colors.resize(mesh.vertices.len(), Vec4::ONE);
                         mesh.colors.push(*color);
                     }
-                    mesh.vertices.push(self.positions[corner.position as usize]);
-                    mesh.uvs.extend(corner.uv.map(|uv| self.uvs[uv as usize]));
-                    mesh.normals.extend(corner.normal.map(|normal| self.normals[normal as usize]));
+                    mesh.vertices.push(positions[corner.position as usize]);
+                    mesh.uvs.extend(corner.uv.map(|uv| uvs[uv as usize]));
+                    match normals {
+                        Normals::Smooth => smooth.extend(corner.normal),
+                        _ => mesh.normals.extend(corner.normal.map(|normal| given[normal as usize])),
+                    }
                     mesh.vertices.len() as u32 - 1
                 })
             });
             mesh.triangles.push(vertices);
+        }
+        Ok(())
+    }
+
+    /// Adds the face at hand to the normals of a smoothing group, which become those of its corners.
+    fn smooth(&mut self, group: i64) {
+        let normal = area_vector(&self.outline).normalize_or_zero();
+        let count = self.corners.len();
+        for (i, corner) in self.corners.iter_mut().enumerate() {
+            let place = self.smooth_normals.place(corner.position, group);
+            corner.normal = Some(place);
+            let [before, own, after] = [i + count - 1, i, i + 1].map(|i| self.outline[i % count]);
+            self.smooth_normals.add(place, normal, [before - own, after - own]);
+        }
+    }
+
+    /// The corners of a face. Some programs write blanks around the slashes: what starts with one belongs to the word before.
+    fn read_corners(&mut self, words: Words) -> Outcome<()> {
+        let mut words = words.peekable();
+        while let Some(word) = words.next() {
+            if words.peek().is_none_or(|next| next.bytes[0] != b'/') {
+                let corner = self.corner(word)?;
+                self.corners.push(corner);
+                continue;
+            }
+            let mut bytes = word.bytes.to_vec();
+            while let Some(next) = words.next_if(|next| next.bytes[0] == b'/') {
+                bytes.extend_from_slice(next.bytes);
+            }
+            let corner = self.corner(Word { bytes: &bytes, at: word.at })?;
+            self.corners.push(corner);
         }
         Ok(())
     }
@@ -266,34 +319,41 @@ impl<'a> Reader<'a> {
         if position.is_empty() || parts.next().is_some() {
             return Err(word.mismatch(CORNER));
         }
+        let Vertices { positions, uvs, normals, .. } = self.vertices;
+        let [positions, uvs, normals] = [positions.len(), uvs.len(), normals.len()];
         Ok(Corner {
-            position: index(position, self.positions.len(), "positions", word)?,
-            uv: self.optional(uv, self.uvs.len(), "texture coordinates", word)?,
-            normal: self.optional(normal, self.normals.len(), "normals", word)?,
+            position: index(position, self.before[0], positions, "positions", word)?,
+            uv: self.optional(uv, self.before[1], uvs, "texture coordinates", word),
+            normal: self.optional(normal, self.before[2], normals, "normals", word),
         })
     }
 
     /// An index that may be left out. Some programs write them though there is nothing that they could name.
-    fn optional(&mut self, text: &[u8], count: usize, what: &'static str, word: Word) -> Outcome<Option<u32>> {
+    fn optional(&mut self, text: &[u8], before: usize, count: usize, what: &'static str, word: Word) -> Option<u32> {
         if text.is_empty() {
-            return Ok(None);
+            return None;
         }
-        if count > 0 {
-            return index(text, count, what, word).map(Some);
+        if count == 0 {
+            if self.unknown.insert(what.into()) {
+                let message = format!("a face names {what}, but the file has none; it is shown without");
+                self.faults.warnings.push(word.at, message);
+            }
+            return None;
         }
-        if self.unknown.insert(what.into()) {
-            self.warnings.push(word.at, format!("a face names {what}, but none are given before it; it has none"));
-        }
-        Ok(None)
+        index(text, before, count, what, word)
+            .inspect_err(|problem| {
+                self.faults.add(problem.clone(), format!("a face names {what} that are not there; it has none"));
+            })
+            .ok()
     }
 
     /// Where the mesh is that takes a face of the group and material at hand.
-    fn mesh(&mut self, at: At, has_uvs: bool, has_normals: bool) -> Outcome<usize> {
-        let current = &mut self.current[usize::from(has_uvs)][usize::from(has_normals)];
+    fn mesh(&mut self, at: At, has_uvs: bool, normals: Normals) -> Outcome<usize> {
+        let current = &mut self.current[usize::from(has_uvs)][normals as usize];
         if let Some(place) = *current {
             return Ok(place);
         }
-        let key = (self.material.as_ref().map(|material| material.name.clone()), has_uvs, has_normals);
+        let key = (self.material.as_ref().map(|material| material.name.clone()), has_uvs, normals);
         let place = *self.places.entry(key).or_insert(self.open.len());
         *current = Some(place);
         if place == self.open.len() {
@@ -301,7 +361,7 @@ impl<'a> Reader<'a> {
                 return Err(Problem::new(at, format!("objects: {}", exceeded("objects", self.limits.objects))));
             }
             let (name, material, mesh) = (self.name.clone(), self.material.clone(), MeshDesc::default());
-            self.open.push(Open { number: self.meshes_begun, at, name, material, mesh });
+            self.open.push(Open { number: self.meshes_begun, at, name, material, mesh, smooth: Vec::new() });
             self.meshes_begun += 1;
         }
         Ok(place)
@@ -309,16 +369,19 @@ impl<'a> Reader<'a> {
 
     /// The group ends; its meshes are whole.
     fn finish_group(&mut self) {
-        self.meshes.objects.extend(self.open.drain(..).map(|Open { at, name, material, mesh, .. }| ObjectDesc {
-            at,
-            kind: "mesh",
-            name,
-            material,
-            transform: None,
-            shape: ShapeDesc::Mesh(Arc::new(mesh)),
-        }));
+        self.whole.append(&mut self.open);
         self.places.clear();
-        self.current = [[None; 2]; 2];
+        self.current = [[None; 3]; 2];
+    }
+
+    /// What was read, once all faces of the smoothing groups are known.
+    fn finish(self) -> Meshes {
+        let object = |Open { at, name, material, mut mesh, smooth, .. }: Open| {
+            mesh.normals.extend(smooth.iter().map(|place| self.smooth_normals.normal(*place)));
+            let shape = ShapeDesc::Mesh(Arc::new(mesh));
+            ObjectDesc { at, kind: "mesh", name, material, transform: None, shape }
+        };
+        Meshes { objects: self.whole.into_iter().map(object).collect(), libraries: self.libraries }
     }
 
     fn leave_out(&mut self, at: At) {
@@ -332,11 +395,25 @@ impl<'a> Reader<'a> {
 /// What a corner of a face looks like.
 const CORNER: &str = "a corner such as 1, 1/2 or 1/2/3";
 
-/// An index from 0 up. In the file they count from 1 up, or from -1 back from what was given last.
-fn index(text: &[u8], count: usize, what: &str, word: Word) -> Outcome<u32> {
-    let number: i64 =
-        str::from_utf8(text).ok().and_then(|text| text.parse().ok()).ok_or_else(|| word.mismatch(CORNER))?;
-    let from_0 = if number < 0 { number.checked_add(count as i64) } else { number.checked_sub(1) };
+/// An index from 0 up. In the file they count from 1 up, or from -1 back from what stands `before` the face.
+fn index(text: &[u8], before: usize, count: usize, what: &str, word: Word) -> Outcome<u32> {
+    let number = whole(text).ok_or_else(|| word.mismatch(CORNER))?;
+    let from_0 = if number < 0 { number.checked_add(before as i64) } else { number.checked_sub(1) };
     let known = from_0.and_then(|index| u32::try_from(index).ok()).filter(|index| (*index as usize) < count);
-    known.ok_or_else(|| Problem::new(word.at, format!("index {number} names none of the {count} {what} given so far")))
+    known.ok_or_else(|| {
+        let message = match number < 0 {
+            true => format!("index {number} names none of the {before} {what} given so far"),
+            false => format!("index {number} names none of the {count} {what} of the file"),
+        };
+        Problem::new(word.at, message)
+    })
+}
+
+/// A whole number, which some programs write with a point.
+fn whole(text: &[u8]) -> Option<i64> {
+    let text = str::from_utf8(text).ok()?;
+    text.parse().ok().or_else(|| {
+        let (number, fraction) = text.split_once('.')?;
+        fraction.bytes().all(|digit| digit == b'0').then(|| number.parse().ok())?
+    })
 }

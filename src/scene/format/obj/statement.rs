@@ -2,6 +2,7 @@
 
 use crate::scene::desc::map::shortened;
 use crate::scene::desc::problem::At;
+use crate::scene::format::encoding::{is_wide, name};
 use crate::scene::format::words::{Words, after_mark};
 
 /// A line that is neither blank nor a comment.
@@ -24,9 +25,28 @@ impl Statement<'_> {
 
     /// All from a place on as one name.
     pub fn name_from(&self, at: At) -> String {
-        let name = String::from_utf8_lossy(&self.text[at.0..self.words.end().0]);
-        // A backslash before the end of a line is none of the name.
-        name.replace("\\\r\n", " ").replace("\\\n", " ").trim().to_owned()
+        self.name_between(at, self.words.end())
+    }
+
+    /// What stands between two places as one name.
+    pub fn name_between(&self, from: At, to: At) -> String {
+        let text = &self.text[from.0..to.0];
+        let mut bytes = Vec::with_capacity(text.len());
+        let mut at = 0;
+        while let Some(byte) = text.get(at) {
+            // A backslash before the end of a line is none of the name.
+            let is_continued = *byte == b'\\' && matches!(text.get(at + 1), Some(b'\n' | b'\r'));
+            bytes.push(if is_continued { b' ' } else { *byte });
+            at += match (is_continued, text.get(at + 1..at + 3)) {
+                (true, Some(b"\r\n")) => 3,
+                (true, _) => 2,
+                _ => 1,
+            };
+        }
+        let is_blank = |byte: &u8| byte.is_ascii_whitespace() || matches!(byte, b'\0' | b'\x0B' | b'\x1A');
+        let start = bytes.iter().position(|byte| !is_blank(byte)).unwrap_or(bytes.len());
+        let end = bytes.iter().rposition(|byte| !is_blank(byte)).map_or(start, |last| last + 1);
+        name(&bytes[start..end])
     }
 
     /// The keyword as text for messages.
@@ -56,12 +76,61 @@ pub fn statements(text: &[u8]) -> impl Iterator<Item = Statement<'_>> {
 fn line_end(text: &[u8], start: usize) -> usize {
     let mut from = start;
     loop {
-        let Some(newline) = text[from..].iter().position(|byte| *byte == b'\n') else { return text.len() };
-        let end = from + newline;
-        let line = text[start..end].strip_suffix(b"\r").unwrap_or(&text[start..end]);
-        if !line.ends_with(b"\\") {
-            return end;
+        let Some(length) = text[from..].iter().position(|byte| matches!(byte, b'\n' | b'\r')) else {
+            return text.len();
+        };
+        let end = from + length;
+        match text[start..end] {
+            [.., before, b'\\'] if is_wide(before) => return end,
+            [.., b'\\'] => from = end + if text[end..].starts_with(b"\r\n") { 2 } else { 1 },
+            _ => return end,
         }
-        from = end + 1;
+    }
+}
+
+/// A name without what some programs put around it: quotes, a comment behind it.
+pub fn bare(name: &str) -> &str {
+    if let Some((quoted, _)) = name.strip_prefix('"').and_then(|rest| rest.split_once('"')) {
+        return quoted;
+    }
+    let comment = [" #", "\t#"].iter().filter_map(|start| name.find(start)).min();
+    name[..comment.unwrap_or(name.len())].trim_end()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(text: &[u8]) -> Vec<(usize, String)> {
+        statements(text).map(|statement| (statement.at.0, statement.name())).collect()
+    }
+
+    #[test]
+    fn lines_end_in_three_ways_and_are_continued() {
+        let all = [(0, "1".to_owned()), (4, "2".to_owned())];
+        assert_eq!(lines(b"a 1\rb 2\r"), all);
+        assert_eq!(lines(b"a 1\nb 2\n"), all);
+        assert_eq!(lines(b"a 1\r\nb 2")[1], (5, "2".to_owned()));
+        for end in ["\\\n", "\\\r", "\\\r\n"] {
+            assert_eq!(lines(format!("a 1{end}2\nb").as_bytes())[0].1, "1 2");
+        }
+        assert_eq!(lines(b"# x\ra 1 # y\rb 2").len(), 2);
+        // The second byte of a character in Shift-JIS may look like a backslash.
+        assert_eq!(lines(b"a \x95\x5C\nb 2").len(), 2);
+    }
+
+    #[test]
+    fn names_are_stripped_of_quotes_and_comments() {
+        for (name, expected) in [
+            ("\"my lib.mtl\"", "my lib.mtl"),
+            ("\"a #1\" # b", "a #1"),
+            ("red # the red", "red"),
+            ("red\t#c", "red"),
+            ("oak#1", "oak#1"),
+            ("\"open", "\"open"),
+            ("", ""),
+        ] {
+            assert_eq!(bare(name), expected);
+        }
     }
 }
