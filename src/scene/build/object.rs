@@ -69,8 +69,10 @@ impl SceneBuilder {
             _ => None,
         };
         let is_thin = self.materials[material as usize].is_thin();
+        let is_mesh = matches!(object.shape, ShapeDesc::Mesh(_));
         let elsewhere = self.sharing.totals();
         let mut parts = ObjectParts::new(&mut self.parts, elsewhere, &self.limits, id, object.at);
+        parts.one_sided = is_mesh && self.materials[material as usize].is_one_sided();
         let is_shared = match &object.shape {
             ShapeDesc::Mesh(mesh) if cut.is_none() => {
                 let wanted = || !self.progress.is_cancelled();
@@ -112,7 +114,8 @@ fn share(
     let transform = *placement.transform();
     let survey = sharing.survey(mesh, &transform);
     parts.take(survey)?;
-    let is_placed = survey.is_some_and(|survey| sharing.place(mesh, object, transform, &survey, wanted));
+    let is_placed =
+        survey.is_some_and(|survey| sharing.place(mesh, (object, parts.one_sided), transform, &survey, wanted));
     if !is_placed {
         parts.restart();
     }

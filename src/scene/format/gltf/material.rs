@@ -38,6 +38,7 @@ pub fn materials(document: &Document, textures: &mut Textures, report: &mut Repo
         name: unique(Some(DEFAULT), materials.len(), &mut names),
         model: model(1.0, 1.0),
         thin: true,
+        one_sided: true,
         is_stand_in: true,
         ..MaterialDesc::default_phong()
     });
@@ -107,6 +108,7 @@ impl Reader<'_, '_> {
             Checked::Valid(AlphaMode::Blend) => Alpha::Blend,
             Checked::Valid(AlphaMode::Opaque) | Checked::Invalid => Alpha::Opaque,
         };
+        described.one_sided = !material.double_sided;
         described.unlit = extensions.unlit.is_some();
         if let Some(ior) = &extensions.ior {
             // 0 stands for a surface that reflects everything; below 1 nothing is dense.
