@@ -21,6 +21,8 @@ pub mod packet;
 pub mod primitive;
 pub mod ray;
 pub mod shape;
+#[cfg(test)]
+mod sides;
 mod single;
 pub mod transform;
 pub mod traverse;
@@ -101,6 +103,8 @@ macro_rules! define_geometry {
             pub bvh: Option<Bvh>,
             /// Shapes without extent that were left out.
             pub dropped: usize,
+            /// Whether some triangles are seen from one side only.
+            pub one_sided: bool,
         }
 
         impl Geometry {
@@ -214,8 +218,10 @@ impl Packed {
             Shape::Sphere { center, radius } => Self::Sphere(Sphere::fields(center, radius)),
             Shape::Plane { point, normal } => Self::Plane(Plane::fields(point, normal)),
             Shape::Triangle { vertices } if Triangle::is_degenerate(vertices) => return None,
-            Shape::Triangle { vertices } if part.holes.is_some() => Self::Cutout(Triangle::fields(vertices)),
-            Shape::Triangle { vertices } => Self::Triangle(Triangle::fields(vertices)),
+            Shape::Triangle { vertices } if part.holes.is_some() => {
+                Self::Cutout(Triangle::fields_of(vertices, part.one_sided))
+            }
+            Shape::Triangle { vertices } => Self::Triangle(Triangle::fields_of(vertices, part.one_sided)),
             Shape::Disk { center, normal, radius } => Self::Disk(Disk::fields(center, normal, radius)),
             Shape::Cone { base, top, .. } if base == top => return None,
             Shape::Cone { base, top, radius_base, radius_top } => {
@@ -244,6 +250,7 @@ impl Geometry {
     pub fn build_while(parts: Vec<Part>, mut instances: Instances, wanted: &dyn Fn() -> bool) -> Option<Self> {
         let mut geometry = Self::default();
         let (packed, holes) = geometry.pack(parts);
+        geometry.one_sided |= instances.one_sided() > 0;
         let indices = instances.number(&geometry.ids);
         let unplaced = Slot { kind: PrimitiveKind::Plane, block: u32::MAX, place: 0 };
         geometry.slots = vec![unplaced; packed.len()];
@@ -292,6 +299,7 @@ impl Geometry {
                 let (index, order) = (self.ids.len() as u32, Triangle::stored_order(vertices));
                 self.attributes.extend(part.attributes.map(|attributes| (index, attributes.reordered(order))));
                 self.extras.extend(part.extras.map(|extras| (index, extras.reordered(order))));
+                self.one_sided |= part.one_sided;
                 holes.extend(part.holes.map(|holes| (index, holes.reordered(order))));
             }
             self.ids.push(part.id);
@@ -299,6 +307,16 @@ impl Geometry {
         self.attributes.shrink_to_fit();
         self.extras.shrink_to_fit();
         (packed.into_iter().flatten().collect(), holes)
+    }
+
+    /// How many triangles are seen from one side only.
+    pub fn count_one_sided(&self) -> usize {
+        if !self.one_sided {
+            return 0;
+        }
+        let blocks = self.triangles.iter().chain(&self.cutouts);
+        let own = blocks.flat_map(|block| &block.fields[9][..block.len as usize]);
+        own.filter(|&&winding| Triangle::has_one_side(winding)).count() + self.instances.one_sided()
     }
 
     /// How many primitives there are.

@@ -108,11 +108,14 @@ pub struct Part {
     pub extras: Option<Box<VertexExtras>>,
     /// Where there are holes in it, triangles only.
     pub holes: Option<Box<Holes>>,
+    /// Whether it is seen only from where its corners are counter-clockwise, triangles only. Light and walkers are stopped
+    /// from either side.
+    pub one_sided: bool,
 }
 
 impl Part {
-    /// A shape whose corners carry nothing.
+    /// A shape that is seen from all sides and whose corners carry nothing.
     pub fn new(shape: Shape, id: PrimitiveId) -> Self {
-        Self { shape, id, attributes: None, extras: None, holes: None }
+        Self { shape, id, attributes: None, extras: None, holes: None, one_sided: false }
     }
 }

@@ -136,9 +136,9 @@ pub(super) fn show<S: Simd, V: Visitor<S>>(
     }
 }
 
-/// Distances to eight primitives: spheres by the terms at hand, all others by their kernel.
+/// Distances to eight primitives: spheres by the terms at hand, all others by the method `$intersect` of their kernel.
 macro_rules! test {
-    (Sphere, $blocks:ident, $search:ident, $simd:ident, $block:expr, $ray:ident, $t_min:ident) => {
+    (Sphere, $intersect:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $ray:ident, $t_min:ident) => {
         match $search.sphere_terms {
             SphereTerms::None => Sphere::intersect(&$search.geometry.spheres[$block].load($simd), &$ray.rays, $t_min),
             SphereTerms::Exact(terms) => {
@@ -149,9 +149,9 @@ macro_rules! test {
             }
         }
     };
-    ($kernel:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $ray:ident, $t_min:ident) => {{
+    ($kernel:ident, $intersect:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $ray:ident, $t_min:ident) => {{
         let fields = $search.geometry.$blocks[$block].load($simd);
-        let (mut mask, t) = $kernel::intersect(&fields, &$ray.rays, $t_min);
+        let (mut mask, t) = $kernel::$intersect(&fields, &$ray.rays, $t_min);
         if $kernel::HAS_HOLES {
             mask = $search.geometry.meets_no_hole($simd, &fields, &$ray.rays, mask, $block as u32, Places::OwnLane);
         }
@@ -171,7 +171,11 @@ macro_rules! define_leaf_tests {
                             let number = leaf.block as usize;
                             let Block { indices, len, .. } = &self.geometry.$blocks[number];
                             let t_min = visitor.lane_t_min(simd, ray.lane, indices);
-                            let (mask, t) = test!($kernel, $blocks, self, simd, number, ray, t_min);
+                            let (mask, t) = if $kernel::HAS_SIDES && self.passes_backs(visitor) {
+                                test!($kernel, intersect_front, $blocks, self, simd, number, ray, t_min)
+                            } else {
+                                test!($kernel, intersect, $blocks, self, simd, number, ray, t_min)
+                            };
                             let used = (1_u64 << len) - 1;
                             show(ray.lane, mask.to_bitmask() & used, t, indices, visitor);
                         })+

@@ -189,6 +189,12 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Whether hits depend on the side that `visitor` sees. Asked once a block, so that other scenes do not pay for it.
+    #[inline(always)]
+    pub(super) fn passes_backs<S: Simd, V: Visitor<S>>(&self, visitor: &V) -> bool {
+        visitor.passes_backs() && self.geometry.one_sided
+    }
+
     /// Sphere blocks as this search tests them.
     #[inline(always)]
     pub(super) fn test_sphere<S: Simd>(
@@ -214,14 +220,20 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Tests one primitive: spheres by the terms at hand, all others by their kernel.
+/// Tests one primitive: spheres by the terms at hand, all others by the method `$intersect` of their kernel.
 macro_rules! test_place {
-    (Sphere, $blocks:ident, $search:ident, $simd:ident, $block:expr, $place:ident, $rays:expr, $t_min:ident) => {
+    (
+        Sphere, $intersect:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $place:ident, $rays:expr,
+        $t_min:ident
+    ) => {
         $search.test_sphere($simd, $block, $place, $rays, $t_min)
     };
-    ($kernel:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $place:ident, $rays:expr, $t_min:ident) => {{
+    (
+        $kernel:ident, $intersect:ident, $blocks:ident, $search:ident, $simd:ident, $block:expr, $place:ident,
+        $rays:expr, $t_min:ident
+    ) => {{
         let fields = $search.geometry.$blocks[$block].splat($simd, $place);
-        let (mut mask, t) = $kernel::intersect(&fields, $rays, $t_min);
+        let (mut mask, t) = $kernel::$intersect(&fields, $rays, $t_min);
         if $kernel::HAS_HOLES {
             let places = crate::geometry::holes::Places::Same($place);
             mask = $search.geometry.meets_no_hole($simd, &fields, $rays, mask, $block as u32, places);
@@ -230,6 +242,24 @@ macro_rules! test_place {
     }};
 }
 pub(super) use test_place;
+
+/// Tests the primitives at some places of a block.
+macro_rules! test_places {
+    (
+        $kernel:ident, $intersect:ident, $blocks:ident, $search:ident, $simd:ident, $block:ident, $places:ident,
+        $rays:ident, $visitor:ident
+    ) => {{
+        let indices = &$search.geometry.$blocks[$block].indices;
+        for place in $places {
+            let index = indices[place];
+            if $visitor.accepts(index) {
+                let t_min = $visitor.t_min(index);
+                let (mask, t) = test_place!($kernel, $intersect, $blocks, $search, $simd, $block, place, $rays, t_min);
+                $visitor.hit(mask & t.simd_le($visitor.limit()), t, index);
+            }
+        }
+    }};
+}
 
 macro_rules! define_leaf_tests {
     ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
@@ -243,15 +273,11 @@ macro_rules! define_leaf_tests {
                     #[inline(always)]
                     || match leaf.kind {
                         $(PrimitiveKind::$kernel => {
-                            let indices = &self.geometry.$blocks[leaf.block as usize].indices;
-                            for place in places {
-                                let index = indices[place];
-                                if visitor.accepts(index) {
-                                    let t_min = visitor.t_min(index);
-                                    let (mask, t) =
-                                        test_place!($kernel, $blocks, self, simd, leaf.block as usize, place, rays, t_min);
-                                    visitor.hit(mask & t.simd_le(visitor.limit()), t, index);
-                                }
+                            let block = leaf.block as usize;
+                            if $kernel::HAS_SIDES && self.passes_backs(visitor) {
+                                test_places!($kernel, intersect_front, $blocks, self, simd, block, places, rays, visitor);
+                            } else {
+                                test_places!($kernel, intersect, $blocks, self, simd, block, places, rays, visitor);
                             }
                         })+
                     },

@@ -10,6 +10,13 @@ pub type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
 
 /// Receives the hits of a packet.
 pub trait Visitor<S: Simd> {
+    /// Whether what is seen from one side only lets rays through from behind, as for rays that look for what is seen.
+    /// Light and walkers are stopped from either side.
+    #[inline(always)]
+    fn passes_backs(&self) -> bool {
+        false
+    }
+
     /// Whether a primitive takes part at all.
     #[inline(always)]
     fn accepts(&mut self, _primitive: PrimitiveIndex) -> bool {
@@ -44,7 +51,7 @@ pub trait Visitor<S: Simd> {
     fn lane_hit(&mut self, lane: usize, t: f32, primitive: PrimitiveIndex);
 }
 
-/// Finds the minimum of (t, primitive) a lane.
+/// Finds the minimum of (t, primitive) a lane, of what is seen.
 #[derive(Clone, Copy, Debug)]
 pub struct ClosestHit<S: Simd> {
     t_min: S::f32s,
@@ -63,6 +70,11 @@ impl<S: Simd> ClosestHit<S> {
 }
 
 impl<S: Simd> Visitor<S> for ClosestHit<S> {
+    #[inline(always)]
+    fn passes_backs(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn t_min(&self, _primitive: PrimitiveIndex) -> S::f32s {
         self.t_min

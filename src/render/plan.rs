@@ -230,6 +230,14 @@ impl Plan {
                 "holes: off, every surface is whole",
             ),
             say(
+                scene.geometry.one_sided,
+                format!(
+                    "one-sided surfaces: on, {} triangles are seen from their front only; they stop light from both sides",
+                    scene.geometry.count_one_sided()
+                ),
+                "one-sided surfaces: off, every surface is seen from both sides",
+            ),
+            say(
                 self.blending,
                 "blending: on, some surfaces let what lies straight behind shine through".to_owned(),
                 "blending: off, no surface is see-through by its opacity",

@@ -158,6 +158,8 @@ pub struct Material<T = u32> {
     pub absorption: Vec3,
     /// Whether even closed shapes bound no body: light passes through without bending.
     pub thin: bool,
+    /// Whether meshes of it are seen from outside only, unless light bends in it or passes through.
+    pub one_sided: bool,
     /// Whether it stands in for one that its file does not name.
     pub is_stand_in: bool,
     /// What the opacity means.
@@ -200,6 +202,7 @@ impl<T> Material<T> {
             fresnel: false,
             absorption: Vec3::ZERO,
             thin: false,
+            one_sided: false,
             is_stand_in: false,
             alpha: Alpha::Opaque,
             opacity: 1.0,
@@ -247,6 +250,12 @@ impl<T> Material<T> {
         }
     }
 
+    /// Whether faces of it that are seen from behind are not there for camera, mirror and refraction rays. What transmits
+    /// light has an inside that is seen.
+    pub fn is_one_sided(&self) -> bool {
+        self.one_sided && self.transparency == Vec3::ZERO
+    }
+
     /// Takes the metal from a metallic-roughness material: rough metal looks the same all over where the only light is at
     /// the eye.
     pub fn take_metal(&mut self) {
@@ -289,6 +298,7 @@ impl<T> Material<T> {
             fresnel: self.fresnel,
             absorption: self.absorption,
             thin: self.thin,
+            one_sided: self.one_sided,
             is_stand_in: self.is_stand_in,
             alpha: self.alpha,
             opacity: self.opacity,

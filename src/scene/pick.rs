@@ -1,4 +1,4 @@
-//! What a single ray meets first: for questions about a scene, not for pictures of it.
+//! What a single ray sees first: for questions about a scene, not for pictures of it.
 
 use super::Scene;
 use super::build::Probe;
@@ -15,9 +15,9 @@ pub struct Pick {
 }
 
 impl Scene {
-    /// What the ray from `origin` along the unit vector `direction` meets first, farther away than `near`.
+    /// What the ray from `origin` along the unit vector `direction` sees first, farther away than `near`.
     pub fn pick(&self, origin: Vec3, direction: Vec3, near: f32) -> Option<Pick> {
-        let (distance, primitive) = Probe::new(&self.geometry).closest(origin, direction, near);
+        let (distance, primitive) = Probe::new(&self.geometry).seen(origin, direction, near);
         self.geometry.id(primitive).map(|id| Pick { distance, id })
     }
 

@@ -38,7 +38,7 @@ fn approximate() -> Vec<(String, Settings)> {
 }
 
 /// What differs between the pictures of a file stored in both ways.
-fn differences(name: &str, path: &Path, cameras: usize, random: &mut Random) -> Vec<String> {
+pub fn differences(name: &str, path: &Path, cameras: usize, random: &mut Random) -> Vec<String> {
     let [flat, shared] = [Instancing::Never, Instancing::Always].map(|instancing| loaded(path, instancing));
     assert!(!shared.geometry.instances.is_empty() && flat.geometry.instances.is_empty(), "{name}");
     let counts = [&flat, &shared].map(|scene| {

@@ -5,6 +5,7 @@
 
 mod scenes;
 
+use crate::gltf::sides;
 use crate::picture_bits::render;
 use crate::stress;
 use crate::temporary::{Folder, load_text};
@@ -118,6 +119,14 @@ fn crowds_of_everything_agree_but_for_few_pixels() {
             problems.extend(check(&name, &scene, &Settings::exact(), 0.02));
         }
     }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+#[test]
+fn one_sided_surfaces_are_seen_where_they_should_be() {
+    let scene = sides::matte();
+    assert!(scene.geometry.one_sided);
+    let problems = check("sides", &scene, &Settings::exact(), 0.02);
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 

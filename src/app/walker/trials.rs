@@ -161,6 +161,21 @@ fn one_slides_along_walls() {
 }
 
 #[test]
+fn backs_that_are_not_seen_stop_the_body() {
+    let corners = [[-9.0, 0.0], [9.0, 0.0], [9.0, 3.0], [-9.0, 3.0]].map(|[x, y]| Vec3::new(x, y, -3.0));
+    let [a, b, c, d] = corners;
+    for wall in [corners, [d, c, b, a]] {
+        let part =
+            |(i, shape)| Part { one_sided: true, ..Part::new(shape, PrimitiveId { object: i as u32, primitive: 0 }) };
+        let shapes = quad(wall).into_iter().chain([floor()]);
+        let geometry = Geometry::build(shapes.enumerate().map(part).collect());
+        let mut walker = someone(&geometry, Vec3::new(0.0, 1.6, 0.0), 0.0);
+        go(&mut walker, &geometry, FORWARD, 4.0, 60.0);
+        assert!((-3.0..-2.0).contains(&eye(&walker).z), "{}", eye(&walker));
+    }
+}
+
+#[test]
 fn one_falls_onto_the_floor_and_stays_there() {
     let ground = place([floor()]);
     let mut walker = someone(&ground, Vec3::new(0.0, 30.0, 0.0), 0.0);

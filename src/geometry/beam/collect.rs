@@ -22,6 +22,8 @@ impl Search<'_> {
         stack: &mut Stack,
     ) -> bool {
         candidates.restart(cover);
+        // Light is stopped from either side; all other beams are of rays that look for what is seen.
+        let beam = &Beam { passes_backs: self.geometry.one_sided && beam.blocking.is_none(), ..*beam };
         match &self.geometry.bvh {
             Some(bvh) if self.use_bvh => {
                 self.list_all(simd, &[PrimitiveKind::Plane], beam, candidates)

@@ -59,12 +59,20 @@ struct Case {
     y: [f32; 2],
 }
 
-fn case(random: &mut Random, kind: PrimitiveKind, parallel: bool) -> Case {
+/// The types of primitives to try, and whether half of them are seen from one side only.
+fn kinds() -> impl Iterator<Item = (PrimitiveKind, bool)> {
+    let all = PrimitiveKind::ALL.iter().map(|&kind| (kind, false));
+    all.chain([(PrimitiveKind::Triangle, true)])
+}
+
+fn case(random: &mut Random, (kind, one_sided): (PrimitiveKind, bool), parallel: bool) -> Case {
     let scale = 10_f32.powf(random.within(-4.0, 4.0));
     let place = random.point() * scale * 10_f32.powf(random.within(-1.0, 2.0));
     let count = if kind == PrimitiveKind::Plane { 5 } else { 60 };
-    let parts =
-        (0..count).map(|object| Part::new(random.shape(kind, place, scale), PrimitiveId { object, primitive: 0 }));
+    let parts = (0..count).map(|object| {
+        let part = Part::new(random.shape(kind, place, scale), PrimitiveId { object, primitive: 0 });
+        Part { one_sided: one_sided && object % 2 == 0, ..part }
+    });
     let geometry = Geometry::build(parts.collect());
     let apex = place + random.point() * scale * 2.0;
     let forward = (place + random.point() * (scale * 0.7) - apex).normalize_or(Vec3::Z);
@@ -130,7 +138,7 @@ fn closest<S: Simd>(simd: S, case: &Case, random: &mut Random) -> (usize, usize)
 #[test]
 fn candidates_are_all_that_rays_can_see() {
     let mut random = Random(SplitMix64(7));
-    for &kind in PrimitiveKind::ALL {
+    for kind in kinds() {
         let mut hits = 0;
         for number in 0..400 {
             let case = case(&mut random, kind, false);
@@ -219,7 +227,7 @@ fn cones_seen_along_their_axes_hide_nothing_that_is_seen() {
 #[test]
 fn verdicts_are_those_of_the_rays() {
     let mut random = Random(SplitMix64(11));
-    for &kind in PrimitiveKind::ALL {
+    for kind in kinds() {
         for parallel in [false, true] {
             let mut blocked = 0;
             for number in 0..300 {

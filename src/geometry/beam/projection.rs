@@ -59,6 +59,11 @@ impl Projection {
         self.turn(point - V3::splat(simd, self.apex))
     }
 
+    /// 1 where the axes are right-handed, else -1.
+    pub(super) fn handedness(&self) -> f32 {
+        self.right.cross(self.up).dot(self.forward).signum()
+    }
+
     /// A range with as much more as directions may be off.
     #[inline]
     fn widen(&self, range: [f32; 2]) -> [f32; 2] {
@@ -268,6 +273,8 @@ pub struct Beam<'a> {
     pub blocking: Option<Blocking<'a>>,
     /// What rays never leave, where they start at a mirror.
     pub(super) front: Option<HalfSpace>,
+    /// Whether rays pass through the backs of what is seen from one side only.
+    pub(super) passes_backs: bool,
 }
 
 impl<'a> Beam<'a> {
@@ -283,6 +290,7 @@ impl<'a> Beam<'a> {
             most: usize::MAX,
             blocking: None,
             front: None,
+            passes_backs: false,
         }
     }
 

@@ -10,6 +10,34 @@ use crate::math::{Lanes, V3};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
+/// Shows `$visitor` every hit of the candidates of one type that can matter to it.
+macro_rules! resolve_all {
+    (
+        $kernel:ident, $intersect:ident, $fields:literal, $outline:literal, $blocks:ident, $search:ident, $simd:ident,
+        $candidates:ident, $points:ident, $rays:ident, $visitor:ident
+    ) => {
+        for at in 0..$candidates.$blocks.len() {
+            let Member { index, block, place } = $candidates.$blocks.member(at);
+            if <$kernel as Outline<$fields, $outline>>::LOOK_FIRST {
+                let outline: [S::f32s; $outline] = $candidates.$blocks.outline($simd, at);
+                let passed_by = $kernel::is_passed_by(&outline, $points, $visitor.limit());
+                if (passed_by | $visitor.excludes($simd, index)).all_true() {
+                    continue;
+                }
+            }
+            let (block, place) = (block as usize, usize::from(place));
+            if $visitor.accepts(index) {
+                let t_min = $visitor.t_min(index);
+                let (mask, t) = test_place!($kernel, $intersect, $blocks, $search, $simd, block, place, &$rays, t_min);
+                $visitor.hit(mask & t.simd_le($visitor.limit()), t, index);
+                if $visitor.is_finished() {
+                    return;
+                }
+            }
+        }
+    };
+}
+
 macro_rules! define_resolve {
     ($($kernel:ident $fields:literal $blocks:ident $outline:literal,)+) => {
         impl Search<'_> {
@@ -31,24 +59,15 @@ macro_rules! define_resolve {
                     } else {
                         Rays::bare(origin, direction)
                     };
-                    for at in 0..candidates.$blocks.len() {
-                        let Member { index, block, place } = candidates.$blocks.member(at);
-                        if <$kernel as Outline<$fields, $outline>>::LOOK_FIRST {
-                            let outline: [S::f32s; $outline] = candidates.$blocks.outline(simd, at);
-                            let passed_by = $kernel::is_passed_by(&outline, points, visitor.limit());
-                            if (passed_by | visitor.excludes(simd, index)).all_true() {
-                                continue;
-                            }
-                        }
-                        let (block, place) = (block as usize, usize::from(place));
-                        if visitor.accepts(index) {
-                            let t_min = visitor.t_min(index);
-                            let (mask, t) = test_place!($kernel, $blocks, self, simd, block, place, &rays, t_min);
-                            visitor.hit(mask & t.simd_le(visitor.limit()), t, index);
-                            if visitor.is_finished() {
-                                return;
-                            }
-                        }
+                    if $kernel::HAS_SIDES && self.passes_backs(visitor) {
+                        resolve_all!(
+                            $kernel, intersect_front, $fields, $outline, $blocks, self, simd, candidates, points, rays,
+                            visitor
+                        );
+                    } else {
+                        resolve_all!(
+                            $kernel, intersect, $fields, $outline, $blocks, self, simd, candidates, points, rays, visitor
+                        );
                     }
                 })+
             }

@@ -31,6 +31,8 @@ pub struct Instance {
     pub bounds: Aabb,
     /// How many of its triangles have area in the world; the others cannot be hit.
     pub with_area: u32,
+    /// Whether its triangles are seen from one side only.
+    pub one_sided: bool,
     to_world: Transform,
     to_mesh: DAffine3,
     /// How far a ball of radius 1 in the world reaches along the axes of the mesh's space.
@@ -82,6 +84,7 @@ impl Instance {
             object,
             bounds,
             with_area,
+            one_sided: false,
             to_world,
             to_mesh,
             ball,
@@ -194,6 +197,11 @@ impl Instances {
         next.checked_sub(1).map_or(0, |last| self.placed[last].shared_before_end)
     }
 
+    /// Triangles that can be hit and are seen from one side only.
+    pub fn one_sided(&self) -> usize {
+        self.placed.iter().filter(|instance| instance.one_sided).map(|instance| instance.with_area as usize).sum()
+    }
+
     /// Triangles that can be hit.
     pub fn triangles(&self) -> usize {
         self.placed.iter().map(|instance| instance.with_area as usize).sum()
@@ -232,13 +240,14 @@ impl Instances {
     #[inline]
     fn fields_of_solid(&self, of: SharedTriangle) -> Option<[f32; 10]> {
         let vertices = self.vertices(of);
-        (!Triangle::is_degenerate(vertices)).then(|| Triangle::fields(vertices))
+        let one_sided = self.placed[of.instance as usize].one_sided;
+        (!Triangle::is_degenerate(vertices)).then(|| Triangle::fields_of(vertices, one_sided))
     }
 
     /// The kernel's fields of a triangle.
     #[inline(never)]
     pub fn fields(&self, of: SharedTriangle) -> [f32; 10] {
-        Triangle::fields(self.vertices(of))
+        Triangle::fields_of(self.vertices(of), self.placed[of.instance as usize].one_sided)
     }
 
     /// What its corners carry, in the kernel's order.

@@ -22,6 +22,7 @@ impl Search<'_> {
             #[inline(always)]
             || {
                 let mut met = Met::NONE;
+                let passes_backs = visitor.passes_backs() && self.geometry.instances.placed[number as usize].one_sided;
                 for lane in 0..S::f32s::LEN {
                     if visitor.lane_limit(lane) < 0.0 {
                         continue;
@@ -32,7 +33,13 @@ impl Search<'_> {
                         // All rays are tested: what one may meet others are likely to.
                         for place in 0..met.block.len as usize {
                             let fields = met.block.splat(simd, place);
-                            test_triangle::<S, V>(met.block.indices[place], &fields, &packet.rays, visitor);
+                            test_triangle::<S, V>(
+                                met.block.indices[place],
+                                &fields,
+                                &packet.rays,
+                                passes_backs,
+                                visitor,
+                            );
                         }
                     }
                     if stack.is_empty() {
@@ -56,6 +63,7 @@ impl Search<'_> {
             #[inline(always)]
             || {
                 let mut met = Met::NONE;
+                let passes_backs = visitor.passes_backs() && self.geometry.instances.placed[number as usize].one_sided;
                 let (origin, direction) = (ray.rays.origin.lane(0), ray.rays.direction.lane(0));
                 let mut walk = Walk::new(&self.geometry.instances, number, origin, direction, stack);
                 while walk.step(simd, visitor.lane_limit(ray.lane), stack, &mut met) {
@@ -64,7 +72,12 @@ impl Search<'_> {
                     }
                     let indices = &met.block.indices;
                     let t_min = visitor.lane_t_min(simd, ray.lane, indices);
-                    let (mask, t) = Triangle::intersect(&met.block.load(simd), &ray.rays, t_min);
+                    let fields = met.block.load(simd);
+                    let (mask, t) = if passes_backs {
+                        Triangle::intersect_front(&fields, &ray.rays, t_min)
+                    } else {
+                        Triangle::intersect(&fields, &ray.rays, t_min)
+                    };
                     let used = (1_u64 << met.block.len) - 1;
                     show(ray.lane, mask.to_bitmask() & used, t, indices, visitor);
                 }
@@ -88,7 +101,7 @@ impl Search<'_> {
                 for (field, own) in fields.iter_mut().zip(own) {
                     *field = S::f32s::splat(simd, own);
                 }
-                test_triangle::<S, V>(primitive, &fields, rays, visitor);
+                test_triangle::<S, V>(primitive, &fields, rays, self.passes_backs(visitor), visitor);
             },
         );
     }
@@ -99,11 +112,16 @@ fn test_triangle<S: Simd, V: Visitor<S>>(
     primitive: PrimitiveIndex,
     fields: &[S::f32s; 10],
     rays: &Rays<S::f32s>,
+    passes_backs: bool,
     visitor: &mut V,
 ) {
     if visitor.accepts(primitive) {
         let t_min = visitor.t_min(primitive);
-        let (mask, t) = Triangle::intersect(fields, rays, t_min);
+        let (mask, t) = if passes_backs {
+            Triangle::intersect_front(fields, rays, t_min)
+        } else {
+            Triangle::intersect(fields, rays, t_min)
+        };
         visitor.hit(mask & t.simd_le(visitor.limit()), t, primitive);
     }
 }

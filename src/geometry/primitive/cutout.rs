@@ -13,6 +13,7 @@ pub struct Cutout;
 impl Kernel<10> for Cutout {
     const NEEDS_FRAME: bool = true;
     const HAS_HOLES: bool = true;
+    const HAS_SIDES: bool = true;
 
     fn bounds(fields: &[f32; 10]) -> Aabb {
         Triangle::bounds(fields)
@@ -26,6 +27,11 @@ impl Kernel<10> for Cutout {
     #[inline(always)]
     fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 10], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
         Triangle::intersect(fields, rays, t_min)
+    }
+
+    #[inline(always)]
+    fn intersect_front<S: Simd, F: Lanes<S>>(fields: &[F; 10], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
+        Triangle::intersect_front(fields, rays, t_min)
     }
 
     #[inline(always)]

@@ -61,6 +61,8 @@ pub trait Kernel<const N: usize> {
     const NEEDS_FRAME: bool = false;
     /// Whether hits have to be held against [holes](super::holes).
     const HAS_HOLES: bool = false;
+    /// Whether there are primitives of this type that are seen from one side only.
+    const HAS_SIDES: bool = false;
 
     /// The least box around the primitive; infinite for planes.
     fn bounds(fields: &[f32; N]) -> Aabb;
@@ -71,6 +73,12 @@ pub trait Kernel<const N: usize> {
     /// Distance to the first hit beyond `t_min` (exclusive), where the mask is set.
     /// Elsewhere the distance is meaningless. Distances may come out infinite: callers compare with a finite limit.
     fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; N], rays: &Rays<F>, t_min: F) -> (F::Mask, F);
+
+    /// [`intersect`](Self::intersect), but without hits on the backs of what is seen from one side only.
+    #[inline(always)]
+    fn intersect_front<S: Simd, F: Lanes<S>>(fields: &[F; N], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
+        Self::intersect(fields, rays, t_min)
+    }
 
     /// The surface at distance `t`, for a ray that [`intersect`](Self::intersect) found to hit there.
     fn surface<S: Simd, F: Lanes<S>>(fields: &[F; N], origin: V3<F>, direction: V3<F>, t: F) -> SurfacePoint<F>;

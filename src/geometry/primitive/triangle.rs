@@ -16,7 +16,11 @@ use glam::{DVec3, Vec3};
 /// Half a unit in the last place.
 const ROUNDING: f32 = 1.0 / (1 << 24) as f32;
 
-/// The triangle kernel. Fields: three corners in ascending order, then +1, or -1 where sorting turned the winding.
+/// Scales the last field of triangles that are seen from one side only.
+const ONE_SIDED: f32 = 2.0;
+
+/// The triangle kernel. Fields: three corners in ascending order, then +1, or -1 where sorting turned the winding; +2 or
+/// -2 if it is seen only from where its corners are counter-clockwise.
 #[derive(Debug)]
 pub struct Triangle;
 
@@ -28,6 +32,27 @@ impl Triangle {
         // Even permutations of (0, 1, 2) keep the winding.
         let winding = if (order[0] + 1) % 3 == order[1] { 1.0 } else { -1.0 };
         [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, winding]
+    }
+
+    /// Packs a triangle that may be seen from one side only into fields.
+    pub fn fields_of(vertices: [Vec3; 3], one_sided: bool) -> [f32; 10] {
+        let mut fields = Self::fields(vertices);
+        if one_sided {
+            // Normals are scaled by it before they are normalised: a power of two leaves their bits as they are.
+            fields[9] *= ONE_SIDED;
+        }
+        fields
+    }
+
+    /// Whether a triangle is seen from one side only, by its last field.
+    pub fn has_one_side(winding: f32) -> bool {
+        winding.abs() > 1.0
+    }
+
+    /// [`has_one_side`](Self::has_one_side), in lanes.
+    #[inline(always)]
+    pub fn is_one_sided<S: Simd, F: Lanes<S>>(winding: F) -> F::Mask {
+        winding.abs().simd_gt(1.0)
     }
 
     /// Which of the given vertices comes first, second and third in the fields.
@@ -147,6 +172,40 @@ impl Triangle {
         ]
     }
 
+    /// The one test of a triangle. If `FRONTS`, the backs of those that are seen from one side only are not hit.
+    #[inline(always)]
+    fn hit<S: Simd, F: Lanes<S>, const FRONTS: bool>(fields: &[F; 10], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
+        let corners = Self::corners(fields);
+        let projected = Self::projected(&corners, rays);
+        let [u, v, w] = Self::weights(projected);
+        // Compared with zero, not by sign bits: -0.0 on an edge is a hit.
+        let zero = F::splat(u.token(), 0.0);
+        let front = u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero);
+        let back = u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero);
+        let sum = u + v + w;
+        let mut inside = (front | back) & sum.simd_ne(zero);
+        if FRONTS {
+            // The ray flies along the normal where the weights are positive: their frame is right-handed around it. Their
+            // signs decide for the very rays that hit, so that a closed surface has no gap between front and back.
+            inside &= !(Self::is_one_sided(fields[9]) & (sum * fields[9]).simd_gt(zero));
+        }
+        if !inside.any_true() {
+            return (inside, zero);
+        }
+        let inside = inside & Self::is_around(projected);
+        let [depth_a, depth_b, depth_c] = Self::depths(&corners, rays);
+        let t = (u * depth_a + v * depth_b + w * depth_c) / sum;
+        let (near, far) = Self::box_interval(&corners, rays);
+        let t = t.simd_lt(near).select(near, t);
+        let t = t.simd_gt(far).select(far, t);
+        let hit = inside & near.simd_le(far) & t.simd_gt(t_min);
+        let starts_in_box = hit & near.simd_le(zero);
+        if starts_in_box.any_true() {
+            return (hit & !(starts_in_box & Self::holds(&corners, rays.origin)), t);
+        }
+        (hit, t)
+    }
+
     /// Barycentric weights of the stored corners at the hit, summing to 1.
     #[inline(always)]
     pub fn barycentric<S: Simd, F: Lanes<S>>(fields: &[F; 10], rays: &Rays<F>) -> [F; 3] {
@@ -158,6 +217,7 @@ impl Triangle {
 
 impl Kernel<10> for Triangle {
     const NEEDS_FRAME: bool = true;
+    const HAS_SIDES: bool = true;
 
     fn bounds(fields: &[f32; 10]) -> Aabb {
         Aabb::from_points([0, 3, 6].map(|i| Vec3::from_slice(&fields[i..i + 3])))
@@ -189,30 +249,12 @@ impl Kernel<10> for Triangle {
 
     #[inline(always)]
     fn intersect<S: Simd, F: Lanes<S>>(fields: &[F; 10], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
-        let corners = Self::corners(fields);
-        let projected = Self::projected(&corners, rays);
-        let [u, v, w] = Self::weights(projected);
-        // Compared with zero, not by sign bits: -0.0 on an edge is a hit.
-        let zero = F::splat(u.token(), 0.0);
-        let front = u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero);
-        let back = u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero);
-        let sum = u + v + w;
-        let inside = (front | back) & sum.simd_ne(zero);
-        if !inside.any_true() {
-            return (inside, zero);
-        }
-        let inside = inside & Self::is_around(projected);
-        let [depth_a, depth_b, depth_c] = Self::depths(&corners, rays);
-        let t = (u * depth_a + v * depth_b + w * depth_c) / sum;
-        let (near, far) = Self::box_interval(&corners, rays);
-        let t = t.simd_lt(near).select(near, t);
-        let t = t.simd_gt(far).select(far, t);
-        let hit = inside & near.simd_le(far) & t.simd_gt(t_min);
-        let starts_in_box = hit & near.simd_le(zero);
-        if starts_in_box.any_true() {
-            return (hit & !(starts_in_box & Self::holds(&corners, rays.origin)), t);
-        }
-        (hit, t)
+        Self::hit::<S, F, false>(fields, rays, t_min)
+    }
+
+    #[inline(always)]
+    fn intersect_front<S: Simd, F: Lanes<S>>(fields: &[F; 10], rays: &Rays<F>, t_min: F) -> (F::Mask, F) {
+        Self::hit::<S, F, true>(fields, rays, t_min)
     }
 
     #[inline(always)]

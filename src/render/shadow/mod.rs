@@ -38,7 +38,7 @@ impl ShadowScratch {
 
 /// Traces the waiting shadow rays light by light and adds what arrives to the samples, in queue order.
 pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &mut Worker) {
-    // Nothing lies between the eye and what it sees.
+    // Nothing lies between the eye and what it sees, but for the backs of one-sided surfaces: they leave its own light be.
     let lit_by_eye = frame.scene.headlight && level == 1;
     let mut shadows = std::mem::take(&mut worker.shadows);
     for (light, queue) in shadows.iter_mut().enumerate() {

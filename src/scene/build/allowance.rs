@@ -46,9 +46,16 @@ impl<'a> Allowance<'a> {
 pub struct Allowed<'a, S: Simd> {
     pub closest: ClosestHit<S>,
     pub allowance: &'a Allowance<'a>,
+    /// Whether only what is seen counts. If not, surfaces that are seen from one side only are met from either side.
+    pub seen_only: bool,
 }
 
 impl<S: Simd> Visitor<S> for Allowed<'_, S> {
+    #[inline(always)]
+    fn passes_backs(&self) -> bool {
+        self.seen_only
+    }
+
     #[inline(always)]
     fn t_min(&self, primitive: PrimitiveIndex) -> S::f32s {
         self.closest.t_min(primitive)

@@ -44,7 +44,7 @@ pub fn usual_irradiance(probe: &mut Probe, camera: &Camera, lights: &[Light]) ->
 }
 
 /// Directions through the points of a picture.
-fn view(camera: &Camera) -> Vec<Vec3> {
+pub(super) fn view(camera: &Camera) -> Vec<Vec3> {
     let frame = camera.frame(ASPECT, ASPECT_HEIGHT);
     let at = |i: usize, count: usize| (2.0 * i as f32 + 1.0) / count as f32 - 1.0;
     let [columns, rows] = GRID;
@@ -56,7 +56,7 @@ fn view(camera: &Camera) -> Vec<Vec3> {
 fn irradiances(probe: &mut Probe, camera: &Camera, directions: &[Vec3], lights: &[Light]) -> Vec<f64> {
     let step = (directions.len() * lights.len()).div_ceil(SHADOW_RAYS).max(1);
     let directions: Vec<Vec3> = directions.iter().step_by(step).copied().collect();
-    let met = probe.look(camera.eye, &directions, camera.near);
+    let met = probe.see(camera.eye, &directions, camera.near);
     let mut lit = Vec::with_capacity(directions.len());
     for (met, direction) in met.into_iter().zip(directions) {
         let Some(met) = met else { continue };
@@ -115,7 +115,7 @@ mod tests {
     fn floor() -> Geometry {
         let id = PrimitiveId { object: 0, primitive: 0 };
         let shape = Shape::Plane { point: Vec3::ZERO, normal: Vec3::Y };
-        Geometry::build(vec![Part { shape, id, attributes: None, extras: None, holes: None }])
+        Geometry::build(vec![Part::new(shape, id)])
     }
 
     fn light(kind: LightKind, intensity: f32) -> Light {

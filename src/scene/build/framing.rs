@@ -1,7 +1,7 @@
 //! The camera of a scene that gives none: one inside of it where it is an interior, else one that sees everything finite.
 
-use super::interior;
 use super::probe::Probe;
+use super::{brightness, interior};
 use crate::geometry::Aabb;
 use crate::scene::{Camera, RenderDefaults};
 use glam::{DVec3, Vec3};
@@ -20,11 +20,23 @@ const ASPECT: f64 = 4.0 / 3.0;
 
 /// The camera of a scene whose finite objects lie in `bounds`.
 pub fn start(probe: &mut Probe, bounds: Aabb, render: &RenderDefaults) -> Camera {
-    interior::stand(probe, bounds).unwrap_or_else(|| frame(bounds, render))
+    interior::stand(probe, bounds).unwrap_or_else(|| {
+        let camera = frame(bounds, render, false);
+        let shows = |probe: &mut Probe, camera: &Camera| {
+            probe.see(camera.eye, &brightness::view(camera), camera.near).iter().any(Option::is_some)
+        };
+        if !probe.knows_backs() || shows(probe, &camera) {
+            return camera;
+        }
+        // It shows nothing but backs, which are not seen.
+        let other = frame(bounds, render, true);
+        if shows(probe, &other) { other } else { camera }
+    })
 }
 
-/// A camera whose picture holds `bounds`; without any, one at eye height that looks at the origin.
-fn frame(bounds: Aabb, render: &RenderDefaults) -> Camera {
+/// A camera whose picture holds `bounds`, from the other side if `from_behind`; without any, one at eye height that looks
+/// at the origin.
+fn frame(bounds: Aabb, render: &RenderDefaults, from_behind: bool) -> Camera {
     let defaults = Camera::default();
     if bounds.is_empty() {
         return Camera { eye: Vec3::new(0.0, 1.6, 5.0), ..defaults };
@@ -35,7 +47,7 @@ fn frame(bounds: Aabb, render: &RenderDefaults) -> Camera {
         (Some(width), Some(height)) => f64::from(width) / f64::from(height),
         _ => ASPECT,
     };
-    let from = view_from(half);
+    let from = if from_behind { -view_from(half) } else { view_from(half) };
     let right = DVec3::Y.cross(from).normalize();
     let up = from.cross(right);
     let half_height = libm::tan(f64::from(defaults.fov).to_radians() / 2.0);
@@ -87,7 +99,7 @@ mod tests {
         for (min, max) in boxes {
             for (width, height) in [(1280, 720), (300, 1200), (500, 500)] {
                 let render = RenderDefaults { width: Some(width), height: Some(height), ..RenderDefaults::default() };
-                let camera = frame(Aabb { min, max }, &render);
+                let camera = frame(Aabb { min, max }, &render, false);
                 assert!(camera.is_valid());
                 for corner in 0..8 {
                     let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
@@ -100,9 +112,9 @@ mod tests {
 
     #[test]
     fn nothing_finite_still_gives_a_camera() {
-        assert!(frame(Aabb::EMPTY, &RenderDefaults::default()).is_valid());
+        assert!(frame(Aabb::EMPTY, &RenderDefaults::default(), false).is_valid());
         let far = Aabb { min: Vec3::splat(1e6), max: Vec3::splat(1e6) };
-        assert!(frame(far, &RenderDefaults::default()).is_valid());
+        assert!(frame(far, &RenderDefaults::default(), false).is_valid());
     }
 
     #[test]

@@ -180,7 +180,7 @@ mod tests {
                 let vertices = if inwards { [a, c, b] } else { [a, b, c] };
                 let id = PrimitiveId { object: 0, primitive: parts.len() as u32 };
                 let shape = Shape::Triangle { vertices };
-                parts.push(Part { shape, id, attributes: None, extras: None, holes: None });
+                parts.push(Part::new(shape, id));
             }
         }
         (Geometry::build(parts), Aabb { min, max })

@@ -72,9 +72,11 @@ impl SceneBuilder {
             self.placeholders.measure(&self.materials[material as usize], mesh, placement);
         }
         let is_thin = self.materials[material as usize].is_thin();
+        let is_mesh = matches!(object.shape, ShapeDesc::Mesh(_));
         let elsewhere = self.sharing.totals();
         let room = (&mut self.parts, &mut self.lost);
         let mut parts = ObjectParts::new(room, elsewhere, &self.limits, id, object.at);
+        parts.one_sided = is_mesh && self.materials[material as usize].is_one_sided();
         let is_shared = match &object.shape {
             ShapeDesc::Mesh(mesh) if cut.is_none() => {
                 let wanted = || !self.progress.is_cancelled();
@@ -138,7 +140,8 @@ fn share(
         parts.lose(transform.point(mesh.vertices[corner]).as_vec3());
     }
     parts.take(survey)?;
-    let is_placed = survey.is_some_and(|survey| sharing.place(mesh, object, transform, &survey, wanted));
+    let is_placed =
+        survey.is_some_and(|survey| sharing.place(mesh, (object, parts.one_sided), transform, &survey, wanted));
     if !is_placed {
         parts.restart();
     }

@@ -46,6 +46,8 @@ pub struct ObjectParts<'a> {
     limits: &'a Limits,
     object: u32,
     at: At,
+    /// Whether its triangles are seen from one side only.
+    pub one_sided: bool,
     /// Bounds of what was pushed.
     pub bounds: Aabb,
     /// Triangles without area that were left out, and the first one's primitive.
@@ -62,7 +64,18 @@ impl<'a> ObjectParts<'a> {
         object: u32,
         at: At,
     ) -> Self {
-        Self { parts, lost, elsewhere, limits, object, at, bounds: Aabb::EMPTY, dropped: 0, first_dropped: 0 }
+        Self {
+            parts,
+            lost,
+            elsewhere,
+            limits,
+            object,
+            at,
+            one_sided: false,
+            bounds: Aabb::EMPTY,
+            dropped: 0,
+            first_dropped: 0,
+        }
     }
 
     /// Notes where something lies that is left out.
@@ -158,7 +171,7 @@ impl<'a> ObjectParts<'a> {
         self.reserve(1)?;
         let id = PrimitiveId { object: self.object, primitive };
         let Corners { attributes, extras, holes } = carried;
-        self.parts.push(Part { shape, id, attributes, extras, holes });
+        self.parts.push(Part { shape, id, attributes, extras, holes, one_sided: self.one_sided });
         Ok(())
     }
 

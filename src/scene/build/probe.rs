@@ -40,9 +40,23 @@ impl<'a> Probe<'a> {
         self.allowance.is_spent()
     }
 
-    /// What rays from `origin` meet, farther away than `t_min`.
+    /// Whether some surfaces are seen from one side only.
+    pub fn knows_backs(&self) -> bool {
+        self.geometry.one_sided
+    }
+
+    /// What rays from `origin` meet, farther away than `t_min`: one-sided surfaces from either side.
     pub fn look(&mut self, origin: Vec3, directions: &[Vec3], t_min: f32) -> Vec<Option<Met>> {
-        let hits = dispatch!(SimdToken::best(), simd => self.trace(simd, origin, directions, t_min));
+        self.met(origin, directions, t_min, false)
+    }
+
+    /// What is seen along rays from `origin`, farther away than `t_min`: one-sided surfaces from their front only.
+    pub fn see(&mut self, origin: Vec3, directions: &[Vec3], t_min: f32) -> Vec<Option<Met>> {
+        self.met(origin, directions, t_min, true)
+    }
+
+    fn met(&mut self, origin: Vec3, directions: &[Vec3], t_min: f32, seen_only: bool) -> Vec<Option<Met>> {
+        let hits = dispatch!(SimdToken::best(), simd => self.trace(simd, origin, directions, t_min, seen_only));
         let met = |(&(distance, primitive), &direction): (&(f32, PrimitiveIndex), &Vec3)| {
             let flat = (primitive != NO_PRIMITIVE).then(|| self.normal(primitive))?;
             let normal = flat.unwrap_or_else(|| {
@@ -60,12 +74,19 @@ impl<'a> Probe<'a> {
         self.look(origin, &[direction], t_min)[0]
     }
 
-    /// How far away the first primitive is that one ray meets, and which it is; [`NO_PRIMITIVE`] for none.
-    pub fn closest(&mut self, origin: Vec3, direction: Vec3, t_min: f32) -> (f32, PrimitiveIndex) {
-        dispatch!(SimdToken::best(), simd => self.trace(simd, origin, &[direction], t_min))[0]
+    /// How far away the first primitive is that is seen along one ray, and which it is; [`NO_PRIMITIVE`] for none.
+    pub fn seen(&mut self, origin: Vec3, direction: Vec3, t_min: f32) -> (f32, PrimitiveIndex) {
+        dispatch!(SimdToken::best(), simd => self.trace(simd, origin, &[direction], t_min, true))[0]
     }
 
-    fn trace<S: Simd>(&mut self, simd: S, origin: Vec3, directions: &[Vec3], t_min: f32) -> Vec<(f32, PrimitiveIndex)> {
+    fn trace<S: Simd>(
+        &mut self,
+        simd: S,
+        origin: Vec3,
+        directions: &[Vec3],
+        t_min: f32,
+        seen_only: bool,
+    ) -> Vec<(f32, PrimitiveIndex)> {
         let search = Search::new(self.geometry, true);
         let always = search.always_tested() as u64;
         let mut hits = Vec::with_capacity(directions.len());
@@ -89,7 +110,7 @@ impl<'a> Probe<'a> {
                     let mut far = S::f32s::splat(simd, f32::INFINITY);
                     far.as_mut_slice()[own.len()..].fill(-1.0);
                     let closest = ClosestHit::new(simd, near, far);
-                    let mut visitor = Allowed { closest, allowance: &self.allowance };
+                    let mut visitor = Allowed { closest, allowance: &self.allowance, seen_only };
                     search.traverse_alone(simd, &packet, &mut self.stack, &mut visitor);
                     let ClosestHit { t, primitive, .. } = visitor.closest;
                     hits.extend((0..own.len()).map(|lane| (t[lane], primitive[lane])));
@@ -130,7 +151,7 @@ mod tests {
         for (corners, normal) in [(vertices, Vec3::Z), ([Vec3::ZERO, Vec3::Y, Vec3::X], Vec3::NEG_Z)] {
             let id = PrimitiveId { object: 0, primitive: 0 };
             let shape = Shape::Triangle { vertices: corners };
-            let part = Part { shape, id, attributes: None, extras: None, holes: None };
+            let part = Part::new(shape, id);
             let geometry = Geometry::build(vec![part]);
             let mut probe = Probe::new(&geometry);
             let origin = Vec3::new(0.2, 0.2, 2.0);
@@ -140,10 +161,25 @@ mod tests {
     }
 
     #[test]
+    fn backs_of_one_sided_triangles_are_met_but_not_seen() {
+        let id = PrimitiveId { object: 0, primitive: 0 };
+        let part = Part::new(Shape::Triangle { vertices: [Vec3::ZERO, Vec3::X, Vec3::Y] }, id);
+        let geometry = Geometry::build(vec![Part { one_sided: true, ..part }]);
+        let mut probe = Probe::new(&geometry);
+        for (z, is_seen) in [(2.0, true), (-2.0, false)] {
+            let (origin, direction) = (Vec3::new(0.2, 0.2, z), Vec3::NEG_Z * z.signum());
+            let met = Some(Met { distance: 2.0, normal: Vec3::Z });
+            assert_eq!(probe.look_along(origin, direction, 0.0), met);
+            assert_eq!(probe.see(origin, &[direction], 0.0), [met.filter(|_| is_seen)]);
+            assert_eq!(probe.seen(origin, direction, 0.0).1 == 0, is_seen);
+        }
+    }
+
+    #[test]
     fn round_things_have_an_inside() {
         let id = PrimitiveId { object: 0, primitive: 0 };
         let shape = Shape::Sphere { center: Vec3::ONE, radius: 1.0 };
-        let geometry = Geometry::build(vec![Part { shape, id, attributes: None, extras: None, holes: None }]);
+        let geometry = Geometry::build(vec![Part::new(shape, id)]);
         let mut probe = Probe::new(&geometry);
         for origin in [Vec3::ONE, Vec3::new(1.0, 1.0, 1.9), Vec3::new(1.0, 1.0, 0.1)] {
             assert_eq!(probe.look_along(origin, Vec3::Z, 0.0).map(|met| met.normal), Some(Vec3::Z), "{origin}");

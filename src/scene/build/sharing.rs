@@ -192,13 +192,13 @@ impl Sharing {
         footprint.get_or_insert_with(|| Footprint::new(mesh)).survey(mesh, transform)
     }
 
-    /// Places a mesh as an object, given what it comes to there.
+    /// Places a mesh as an object, which may be seen from one side only, given what it comes to there.
     /// False if it has to be flattened after all: it is empty, or rays cannot be taken into its space.
     /// So it is with `wanted` saying no, too.
     pub fn place(
         &mut self,
         mesh: &Arc<Mesh>,
-        object: u32,
+        (object, one_sided): (u32, bool),
         transform: Transform,
         survey: &Survey,
         wanted: &dyn Fn() -> bool,
@@ -216,7 +216,8 @@ impl Sharing {
         let shared = &self.instances.meshes[known as usize];
         let with_area = mesh.triangles.len() as u32 - survey.dropped;
         let instance = Instance::new((known, shared), object, transform, survey.bounds, with_area);
-        let Some(instance) = instance else { return false };
+        let Some(mut instance) = instance else { return false };
+        instance.one_sided = one_sided;
         self.totals.indices += mesh.triangles.len() as u64;
         self.instances.placed.push(instance);
         true

@@ -5,4 +5,5 @@ pub mod file;
 mod materials;
 mod meshes;
 mod nodes;
+pub mod sides;
 mod views;

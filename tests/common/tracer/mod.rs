@@ -111,10 +111,10 @@ impl<'a> Tracer<'a> {
         &self.scene.materials[self.scene.objects[object as usize].material as usize]
     }
 
-    /// The least (t, object, primitive) within the ray's range.
+    /// The least (t, object, primitive) within the ray's range of what is seen.
     fn closest(&self, ray: &Ray) -> Option<(f64, &Primitive)> {
-        let hits =
-            self.primitives.iter().flat_map(|p| p.hits(ray.origin, ray.direction).into_iter().map(move |t| (t, p)));
+        let seen = self.primitives.iter().filter(|p| !p.is_passed(ray.direction));
+        let hits = seen.flat_map(|p| p.hits(ray.origin, ray.direction).into_iter().map(move |t| (t, p)));
         hits.filter(|(t, _)| *t > ray.range.0 && *t <= ray.range.1).reduce(|a, b| if b.0 < a.0 { b } else { a })
     }
 

@@ -115,6 +115,16 @@ impl Primitive {
         }
     }
 
+    /// Whether it is seen from one side only, and a ray meets the other.
+    pub fn is_passed(&self, direction: DVec3) -> bool {
+        match self.shape {
+            Shape::Triangle { corners: [a, b, c], winding, .. } => {
+                winding.abs() > 1.0 && (b - a).cross(c - a).dot(direction) * winding > 0.0
+            }
+            _ => false,
+        }
+    }
+
     /// The surface where a ray meets it.
     pub fn surface(&self, origin: DVec3, direction: DVec3, t: f64) -> Surface {
         let position = origin + direction * t;
@@ -129,7 +139,7 @@ impl Primitive {
             }
             Shape::Triangle { corners: [a, b, c], winding, normals, uvs } => {
                 let cross = (b - a).cross(c - a);
-                let geometric = cross.normalize() * winding;
+                let geometric = cross.normalize() * winding.signum();
                 let weight =
                     |from: DVec3, to: DVec3| (to - from).cross(position - from).dot(cross) / cross.length_squared();
                 let [u, v, w] = [weight(b, c), weight(c, a), weight(a, b)];

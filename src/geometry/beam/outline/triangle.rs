@@ -27,7 +27,7 @@ impl Outline<10, TRIANGLE> for Triangle {
         let (b, c) = (a + to_b, a + to_c);
 
         let (nearest_z, farthest_z) = (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z));
-        let bounds = if projection.parallel {
+        let mut bounds = if projection.parallel {
             let by = slack * 2.0;
             [
                 a.x.min(b.x).min(c.x) - by,
@@ -78,6 +78,13 @@ impl Outline<10, TRIANGLE> for Triangle {
             let plane = times([normal.x, normal.y, normal.z], one / turned);
             nearest = times(plane, one + off);
             farthest = times(plane, one - off);
+        }
+        if beam.passes_backs {
+            // Where the triangle is seen from behind for sure, no ray of the beam hits it. In view coordinates, left-handed
+            // axes turn the normal around.
+            let along_normal = (turned * fields[9] * projection.handedness()).simd_gt(zero);
+            let unseen = certain & along_normal & Triangle::is_one_sided(fields[9]);
+            bounds[0] = unseen.select(F::splat(simd, NEAREST), bounds[0]);
         }
         // Seen from nearly within its plane the triangle has no sides: its bounds alone decide.
         let scale = certain.select(one.copysign(turned) / side_margin, zero);

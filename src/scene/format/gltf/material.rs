@@ -81,7 +81,13 @@ impl Materials {
 
 /// The material of primitives that name none.
 fn default() -> MaterialDesc {
-    MaterialDesc { model: model(1.0, 1.0), thin: true, is_stand_in: true, ..MaterialDesc::default_phong() }
+    MaterialDesc {
+        model: model(1.0, 1.0),
+        thin: true,
+        one_sided: true,
+        is_stand_in: true,
+        ..MaterialDesc::default_phong()
+    }
 }
 
 /// The file's name of material `i`, unless there is none or another has it.
@@ -136,6 +142,7 @@ impl Reader<'_, '_> {
             Checked::Valid(AlphaMode::Blend) => Alpha::Blend,
             Checked::Valid(AlphaMode::Opaque) | Checked::Invalid => Alpha::Opaque,
         };
+        described.one_sided = !material.double_sided;
         described.unlit = extensions.unlit.is_some();
         if let Some(ior) = &extensions.ior {
             // 0 stands for a surface that reflects everything; below 1 nothing is dense.
