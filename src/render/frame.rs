@@ -223,8 +223,8 @@ pub fn render_frame(
         super::inside::bodies_around(scene, tables, camera.eye, around_eye);
     }
     if plan.sphere_cache != SphereCache::Off {
-        let thesis = plan.sphere_cache == SphereCache::Thesis;
-        dispatch!(token, simd => scene.geometry.fill_sphere_terms(simd, camera.eye, thesis, sphere_terms));
+        let difference = plan.sphere_cache == SphereCache::Difference;
+        dispatch!(token, simd => scene.geometry.fill_sphere_terms(simd, camera.eye, difference, sphere_terms));
     }
     let view = camera.frame(film.width(), film.height());
     let axes = [view.right.normalize(), view.up.normalize(), view.forward];
@@ -244,7 +244,7 @@ pub fn render_frame(
         sphere_terms: match plan.sphere_cache {
             SphereCache::Off => SphereTerms::None,
             SphereCache::On => SphereTerms::Exact(sphere_terms),
-            SphereCache::Thesis => SphereTerms::Thesis(sphere_terms),
+            SphereCache::Difference => SphereTerms::Difference(sphere_terms),
         },
         around_eye,
         keeps_seen: film.planes().any_seen() || plan.trails || settings.supersample == Supersample::Adaptive,
