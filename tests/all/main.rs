@@ -6,6 +6,7 @@ mod adversary;
 mod bench;
 mod blit;
 mod cli;
+mod command_line;
 mod corpus;
 mod crowds;
 mod determinism;
@@ -31,6 +32,8 @@ mod reference;
 mod scene_errors;
 mod scene_files;
 mod scene_loading;
+#[cfg(unix)]
+mod signals;
 mod stress;
 mod subsampling;
 mod surfaces;
