@@ -357,7 +357,7 @@ mod tests {
             for frames in 1..3 {
                 render_frame(&scene, &scene.cameras[0].camera, &settings, &mut scratch, &mut film);
                 let announced = TileCount::of_frame(&settings, 200, 130);
-                assert!(announced > 2 && tiles.finished() == frames * announced, "{settings:?}");
+                assert!(announced > 0 && tiles.finished() == frames * announced, "{settings:?}");
             }
         }
     }

@@ -185,7 +185,13 @@ impl Gait {
             let nearest = self.body.away_from_wall(world, reached, self.highest(world, wall.is_steep));
             let mut ways_out = nearest.into_iter().chain((-wall.aside).try_normalize());
             let Some(away) = ways_out.find(|away| way.dot(*away) < 0.0) else { return false };
-            way += away * (CLEARANCE * self.body.radius() - way.dot(away));
+            let clearance = CLEARANCE * self.body.radius();
+            way -= away * way.dot(away);
+            // Straight into a wall there is no way along it, and nothing to keep clear for.
+            if way.length() < clearance {
+                return false;
+            }
+            way += away * clearance;
         }
         false
     }
@@ -209,8 +215,13 @@ impl Gait {
         let feet = self.feet.dot(world.up);
         let deepest = feet - DEEPEST * self.body.eye_height;
         let [mut floor, mut ground] = [f64::NEG_INFINITY; 2];
+        let mut is_in_wall = false;
         for sole in self.body.soles(world, self.feet) {
-            if sole.height < deepest || sole.height > self.highest(world, sole.is_steep) {
+            if sole.height > self.highest(world, sole.is_steep) {
+                is_in_wall = true;
+                continue;
+            }
+            if sole.height < deepest {
                 continue;
             }
             floor = floor.max(sole.height);
@@ -218,7 +229,12 @@ impl Gait {
                 ground = ground.max(sole.height);
             }
         }
-        let height = if floor.is_finite() { floor } else { self.last_floor.min(feet) };
+        let height = match floor.is_finite() {
+            true => floor,
+            // One slides down until some of it is low enough: the body stays outside.
+            false if is_in_wall => deepest,
+            false => self.last_floor.min(feet),
+        };
         (height - feet, if ground.is_finite() { ground } else { self.ground.min(height) })
     }
 

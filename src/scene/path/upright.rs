@@ -116,13 +116,13 @@ mod tests {
         let before = up(&whole, 19).1;
         for frame in [20, 21, 500, 989, 990] {
             let (is_valid, up) = up(&whole, frame);
-            assert!(is_valid && up.abs_diff_eq(before, 1e-3), "frame {frame}: {up}, not {before}");
+            assert!(is_valid && up.abs_diff_eq(before, 1e-2), "frame {frame}: {up}, not {before}");
         }
         let begins = write(&[key(0, down), key(1, down), key(2, down), key(3, right)]);
         let after = up(&begins, 11).1;
         for frame in [0, 7, 10] {
             let (is_valid, up) = up(&begins, frame);
-            assert!(is_valid && up.abs_diff_eq(after, 1e-3), "frame {frame}: {up}, not {after}");
+            assert!(is_valid && up.abs_diff_eq(after, 1e-2), "frame {frame}: {up}, not {after}");
         }
         let ends = write(&[key(0, ahead), key(1, down)]);
         for frame in [10, 11, 1_000_000_000_000] {
