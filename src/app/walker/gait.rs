@@ -229,11 +229,13 @@ impl Gait {
                 ground = ground.max(sole.height);
             }
         }
-        let height = match floor.is_finite() {
-            true => floor,
-            // One slides down until some of it is low enough: the body stays outside.
-            false if is_in_wall => deepest,
-            false => self.last_floor.min(feet),
+        let height = if is_in_wall && !ground.is_finite() {
+            // Legs in what is too steep to stand on: one slides down along it until it is low enough. The body stays outside.
+            deepest
+        } else if floor.is_finite() {
+            floor
+        } else {
+            self.last_floor.min(feet)
         };
         (height - feet, if ground.is_finite() { ground } else { self.ground.min(height) })
     }
