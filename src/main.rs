@@ -6,7 +6,7 @@
 //! | 1 | the input or the run failed |
 //! | 2 | wrong usage |
 //! | 130 | stopped by Ctrl-C |
-//! | 128 + n | a walk in the terminal was stopped by signal n |
+//! | 128 + n | stopped by signal n |
 
 mod cli;
 
@@ -22,6 +22,10 @@ fn main() -> ExitCode {
             tell(panic);
         }
     }));
+    if let Some(message) = std::env::args_os().nth(1).and_then(|word| cli::mistyped_command(&word)) {
+        cli::note(&format!("error: {message}"));
+        return ExitCode::from(cli::Failure::WRONG_USAGE);
+    }
     let asked = match cli::command().try_get_matches() {
         Ok(asked) => asked,
         Err(answer) => return print_answer(&answer),

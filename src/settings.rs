@@ -33,8 +33,8 @@ pub enum SphereCache {
     Off,
     /// Centre minus origin, and the squared radius: the same values as computing them per ray.
     On,
-    /// The thesis's form, |C-O|² - r²: fewer operations, but it cancels for distant spheres.
-    Thesis,
+    /// The difference |C-O|² - r²: fewer operations, but in single precision it cancels for distant spheres.
+    Difference,
 }
 
 /// The instruction set the kernels run on.
@@ -384,9 +384,10 @@ const fn different(value: &'static str) -> Choice {
 const ON_OFF_SAME: Kind = Kind::Choice(&[same("on"), same("off")]);
 const ON_OFF_DIFFERENT: Kind = Kind::Choice(&[same("on"), different("off")]);
 
-/// A row whose values are the variants of an enum.
+/// A row whose values are the variants of an enum; former names of values still set them.
 macro_rules! choice_row {
-    ($name:literal, $help:literal, $field:ident, [$($value:literal => $variant:expr, $promise:ident);+ $(;)?]) => {
+    ($name:literal, $help:literal, $field:ident,
+     [$($value:literal $(formerly $old:literal)? => $variant:expr, $promise:ident);+ $(;)?]) => {
         Row {
             name: $name,
             help: $help,
@@ -396,7 +397,7 @@ macro_rules! choice_row {
                 unreachable!("every variant has a name")
             },
             set: |s, text| {
-                $(if text == $value { s.$field = $variant; return Ok(()); })+
+                $(if text == $value $(|| text == $old)? { s.$field = $variant; return Ok(()); })+
                 Err(format!("expected one of {}", [$($value),+].join(", ")))
             },
         }
@@ -455,8 +456,8 @@ pub const ROWS: &[Row] = &[
     ),
     switch_row!("shadow-cache", "test the last blocker of a light before anything else", shadow_cache, ON_OFF_SAME),
     switch_row!("bvh", "bounding volume hierarchy; off tests every primitive", bvh, ON_OFF_SAME),
-    choice_row!("sphere-cache", "sphere terms computed once per common ray origin; thesis caches |C-O|^2 - r^2, which cancels far away",
-        sphere_cache, ["on" => SphereCache::On, same; "off" => SphereCache::Off, same; "thesis" => SphereCache::Thesis, approximate]),
+    choice_row!("sphere-cache", "sphere terms computed once per common ray origin; difference caches |C-O|^2 - r^2 in single precision, which cancels far away",
+        sphere_cache, ["on" => SphereCache::On, same; "off" => SphereCache::Off, same; "difference" formerly "thesis" => SphereCache::Difference, approximate]),
     choice_row!("simd", "instruction set of the kernels",
         simd, ["auto" => SimdLevel::Auto, same; "off" => SimdLevel::Off, same; "sse4" => SimdLevel::Sse4, same;
                "avx2" => SimdLevel::Avx2, same; "avx512" => SimdLevel::Avx512, same]),
@@ -563,38 +564,4 @@ fn integer(text: &str, min: i64, max: i64) -> Result<i64, String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_unique_and_every_value_survives_a_round_trip() {
-        for (i, row) in ROWS.iter().enumerate() {
-            assert!(ROWS[..i].iter().all(|r| r.name != row.name), "{} twice", row.name);
-            for preset in PRESETS {
-                let settings = (preset.settings)();
-                let text = (row.get)(&settings);
-                let mut copy = settings.clone();
-                (row.set)(&mut copy, &text).expect("a printed value can be typed");
-                assert_eq!(copy, settings, "{} = {text}", row.name);
-            }
-            if let Kind::Choice(choices) = &row.kind {
-                for choice in *choices {
-                    let mut settings = Settings::default();
-                    (row.set)(&mut settings, choice.value).expect("a listed value is accepted");
-                    assert_eq!((row.get)(&settings), choice.value);
-                }
-            }
-            assert!((row.set)(&mut Settings::default(), "nonsense").is_err());
-        }
-    }
-
-    #[test]
-    fn numbers_outside_their_range_are_refused() {
-        let threshold = row("match-threshold").expect("it is listed");
-        let mut settings = Settings::default();
-        assert!((threshold.set)(&mut settings, "16/255").is_ok());
-        for bad in ["-1", "2", "nan", "1/0", "inf", ""] {
-            assert!((threshold.set)(&mut settings, bad).is_err(), "{bad}");
-        }
-    }
-}
+mod tests;

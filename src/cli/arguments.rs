@@ -9,8 +9,10 @@ use raywalk::math::simd;
 use raywalk::measure::metric::METRICS;
 use raywalk::measure::tune::Bound;
 use raywalk::picture::FORMATS;
-use raywalk::scene::Limits;
+use raywalk::scene::desc::suggest::nearest;
+use raywalk::scene::{Format, Limits};
 use raywalk::settings::{Kind, PRESETS, ROWS, Row, Settings};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// The whole command line.
@@ -22,7 +24,8 @@ pub fn command() -> Command {
         .after_help(
             "Without a command: opens a window on SCENE, or on the built-in scene. With no display, walks in the \
              terminal; without a terminal, renders one frame to raywalk.png in the current folder.\n\nExit codes: 0 \
-             done, 1 the input or the run failed, 2 wrong usage, 130 after Ctrl-C.",
+             done, 1 the input or the run failed, 2 wrong usage, 130 after Ctrl-C, 128 + N after \
+             signal N.",
         )
         .args_conflicts_with_subcommands(true)
         .subcommand_precedence_over_arg(true)
@@ -45,7 +48,7 @@ fn render() -> Command {
     let maps = Map::ALL.map(|map| format!("{}: {}", map.name(), map.help()));
     let command = Command::new("render")
         .about("Renders one or many frames, without window or GPU")
-        .after_help("Starts from the preset exact. Without -o nothing is written: the run is timed (see --stats).")
+        .after_help("Starts from the preset exact. Without -o no picture is written: the run is timed (see --stats).")
         .arg(
             Arg::new("output")
                 .short('o')
@@ -93,7 +96,7 @@ fn bench() -> Command {
         .value_name("SCENE")
         .num_args(0..)
         .value_parser(value_parser!(PathBuf))
-        .help("Scene files [default: the built-in scene]");
+        .help("Scene files, or folders with one each [default: the built-in scene]");
     let command = Command::new("bench")
         .about("Measures how fast and how true every method is, and draws it")
         .after_help(
@@ -170,6 +173,7 @@ fn compare() -> Command {
                  yellow for the greatest of the pair",
         ))
         .arg(switch("hdr", "Compare linear light, unclamped, instead of what a display shows"))
+        .arg(limit().help("Change a limit: picture-pixels bounds the pixels of each picture"))
 }
 
 /// The options of every command that renders one scene.
@@ -226,11 +230,7 @@ fn with_options(command: Command) -> Command {
 fn reading() -> [Arg; 3] {
     let limits: Vec<String> = Limits::help().collect();
     [
-        Arg::new("limit")
-            .long("limit")
-            .value_name("NAME=VALUE")
-            .value_parser(values::limit)
-            .action(ArgAction::Append)
+        limit()
             .help("Change a limit on what a scene may ask of the machine")
             .long_help(format!("Change a limit on what a scene may ask of the machine\n{}", limits.join("\n"))),
         switch("strict", "Treat the scene's warnings as errors"),
@@ -238,11 +238,29 @@ fn reading() -> [Arg; 3] {
     ]
 }
 
+fn limit() -> Arg {
+    Arg::new("limit").long("limit").value_name("NAME=VALUE").value_parser(values::limit).action(ArgAction::Append)
+}
+
 fn scene() -> Arg {
     Arg::new("scene")
         .value_name("SCENE")
         .value_parser(value_parser!(PathBuf))
-        .help("Scene file [default: the built-in scene]")
+        .help("Scene file, or a folder with one [default: the built-in scene]")
+}
+
+/// What was probably meant by the first word of the command line, where that is neither a command nor the path of anything,
+/// but close to a command's name.
+pub fn mistyped_command(word: &OsStr) -> Option<String> {
+    let text = word.to_str().filter(|text| text.chars().next().is_some_and(char::is_alphabetic))?;
+    let command = command();
+    let known: Vec<&str> = command.get_subcommands().map(Command::get_name).chain(["help"]).collect();
+    if known.contains(&text) || Path::new(word).exists() || Format::of(Path::new(word)).is_some() {
+        return None;
+    }
+    let begins = |name: &&&str| text.len() > 1 && (name.starts_with(text) || text.starts_with(**name));
+    let meant = known.iter().find(begins).copied().or_else(|| nearest(text, &known))?;
+    Some(format!("{text} is neither a command nor a file; did you mean raywalk {meant}?"))
 }
 
 fn switch(name: &'static str, help: &'static str) -> Arg {

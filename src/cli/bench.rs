@@ -8,6 +8,7 @@ use super::progress::Progress;
 use super::stage::{self, Stage};
 use super::{Failure, stdout};
 use clap::ArgMatches;
+use raywalk::app::scenes::scene_file;
 use raywalk::measure::bench::{Bench, BenchError, Listener};
 use raywalk::measure::records::{Environment, Records};
 use raywalk::measure::sweep::{Effort, Job, View, affordable_size, by_primitives, of_scene};
@@ -19,7 +20,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Measures what `asked` says.
-pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
+pub fn run(asked: &ArgMatches, interrupt: &Interrupt) -> Result<(), Failure> {
     let options = Options::of(asked, Settings::exact)?;
     output::check_planes(None, options.planes)?;
     if options.stats.is_some() {
@@ -31,10 +32,10 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
         let records = records.ok_or_else(|| Failure::Run(format!("{}: no records.json to draw", folder.display())))?;
         return Ok(page::draw(&records, &folder)?);
     }
-    let interrupt = Interrupt::listen()?;
     let effort = if asked.get_flag("quick") { Effort::QUICK } else { Effort::DEFAULT };
     let mut environment = Environment::here(&options.settings, effort.name);
-    let scenes: Vec<&PathBuf> = asked.get_many("scenes").into_iter().flatten().collect();
+    let scenes = asked.get_many::<PathBuf>("scenes").into_iter().flatten();
+    let scenes: Vec<PathBuf> = scenes.map(|path| scene_file(path)).collect::<Result<_, _>>()?;
     let is_thesis = asked.get_flag("thesis");
     let mut views = match () {
         () if asked.get_flag("stability") => Vec::new(),
@@ -113,8 +114,8 @@ fn sweep_jobs(views: &[View], options: &Options, effort: &Effort) -> Result<Vec<
 }
 
 /// What is looked at: in each scene, from every camera and along every path that were named.
-fn views(scenes: &[&PathBuf], asked: &ArgMatches, options: &Options) -> Result<Vec<View>, Failure> {
-    let files = if scenes.is_empty() { vec![None] } else { scenes.iter().map(|file| Some((*file).clone())).collect() };
+fn views(scenes: &[PathBuf], asked: &ArgMatches, options: &Options) -> Result<Vec<View>, Failure> {
+    let files = if scenes.is_empty() { vec![None] } else { scenes.iter().cloned().map(Some).collect() };
     let cameras: Vec<String> = asked.get_many("camera").into_iter().flatten().cloned().collect();
     let paths: Vec<PathBuf> = asked.get_many("path").into_iter().flatten().cloned().collect();
     let mut views = Vec::new();

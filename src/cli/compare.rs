@@ -1,5 +1,6 @@
 //! `raywalk compare`: how two pictures differ.
 
+use super::options::limits;
 use super::{Failure, stdout};
 use clap::ArgMatches;
 use raywalk::measure::difference::difference_picture;
@@ -29,7 +30,7 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
 
 fn read(asked: &ArgMatches, name: &str) -> Result<picture::Picture, Failure> {
     let path = asked.get_one::<PathBuf>(name).ok_or_else(|| Failure::Usage(format!("{name} is missing")))?;
-    Ok(picture::read(path)?)
+    Ok(picture::read(path, &limits(asked)?)?)
 }
 
 /// The difference picture to write.

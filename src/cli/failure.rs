@@ -1,6 +1,7 @@
 //! What ends a command early, and the exit code it means.
 
 use raywalk::app::AppError;
+use raywalk::app::scenes::NoScene;
 use raywalk::measure::bench::BenchError;
 use raywalk::measure::metric::SizesDiffer;
 use raywalk::measure::records::RecordsError;
@@ -16,6 +17,9 @@ pub enum Failure {
     /// A scene or camera path could not be read.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A folder holds no scene, or several.
+    #[error(transparent)]
+    Folder(#[from] NoScene),
     /// A picture or record could not be written or read.
     #[error(transparent)]
     Picture(#[from] PictureError),

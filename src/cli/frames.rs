@@ -36,12 +36,24 @@ impl Frames {
         self.path.is_some() && self.range.end - self.range.start > 1
     }
 
+    /// Refuses a path that has a frame without a view, before the first is rendered.
+    pub fn check(&self, base: &Camera, scene: &Scene) -> Result<(), Failure> {
+        // Frames after the last key are like it.
+        let last = self.path.as_ref().map_or(0, CameraPath::frame_count);
+        let end = self.range.end.min(self.range.start.saturating_add(1).max(last));
+        (self.range.start..end).try_for_each(|frame| self.camera(frame, base, scene).map(drop))
+    }
+
     /// The camera of frame `frame` in `scene`, moving if there is a path, else `base`.
     pub fn camera(&self, frame: u64, base: &Camera, scene: &Scene) -> Result<Camera, Failure> {
         let Some(path) = &self.path else { return Ok(*base) };
         let camera = path.camera(frame, base, scene.origin);
-        let message =
-            || format!("frame {frame} of the camera path looks along its own up, or nowhere; change its keys");
+        let message = || {
+            format!(
+                "frame {frame} of the camera path has no view: it looks at its own position, or along its up as all frames \
+                 do; change its keys, or give it another \"up\""
+            )
+        };
         if camera.is_valid() { Ok(camera) } else { Err(Failure::Run(message())) }
     }
 }

@@ -19,23 +19,26 @@ mod tune;
 mod values;
 mod view;
 
-pub use arguments::command;
+pub use arguments::{command, mistyped_command};
 pub use failure::Failure;
 pub use stdout::note;
 
 use clap::ArgMatches;
+use interrupt::Interrupt;
 
 /// Runs the command that was asked for.
 ///
 /// # Errors
 /// [`Failure`] with the exit code and one line of text.
 pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
-    match asked.subcommand() {
-        Some(("render", asked)) => render::run(asked),
-        Some(("bench", asked)) => bench::run(asked),
-        Some(("tune", asked)) => tune::run(asked),
+    let interrupt = Interrupt::listen()?;
+    let ended = match asked.subcommand() {
+        Some(("render", asked)) => render::run(asked, &interrupt),
+        Some(("bench", asked)) => bench::run(asked, &interrupt),
+        Some(("tune", asked)) => tune::run(asked, &interrupt),
         Some(("info", asked)) => info::run(asked),
         Some(("compare", asked)) => compare::run(asked),
-        _ => view::run(asked),
-    }
+        _ => view::run(asked, &interrupt),
+    };
+    interrupt.name(ended)
 }

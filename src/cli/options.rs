@@ -5,8 +5,9 @@ use super::values::Size;
 use clap::ArgMatches;
 use glam::DVec3;
 use raywalk::app::maps::Map;
-use raywalk::picture::MAX_PIXELS;
+use raywalk::app::scenes::scene_file;
 use raywalk::render::Planes;
+use raywalk::scene::limits::exceeded;
 use raywalk::scene::{Limits, Progress};
 use raywalk::settings::{PRESETS, Preset, ROWS, Settings, Visibility};
 use std::ops::Range;
@@ -57,19 +58,25 @@ pub struct Options {
 impl Reading {
     /// The meaning of `asked`.
     pub fn of(asked: &ArgMatches) -> Result<Self, Failure> {
-        let mut limits = Limits::default();
-        for (name, value) in asked.get_many::<(String, String)>("limit").into_iter().flatten() {
-            limits.set(name, value).map_err(Failure::Usage)?;
-        }
+        // A bench has any number of scenes instead.
+        let scene = asked.try_get_one::<PathBuf>("scene").ok().flatten();
         Ok(Self {
-            // A bench has any number of scenes instead.
-            scene: asked.try_get_one("scene").ok().flatten().cloned(),
-            limits,
+            scene: scene.map(|path| scene_file(path)).transpose()?,
+            limits: limits(asked)?,
             strict: asked.get_flag("strict"),
             quiet: asked.get_flag("quiet"),
             progress: Progress::default(),
         })
     }
+}
+
+/// The limits with what `asked` changes.
+pub fn limits(asked: &ArgMatches) -> Result<Limits, Failure> {
+    let mut limits = Limits::default();
+    for (name, value) in asked.get_many::<(String, String)>("limit").into_iter().flatten() {
+        limits.set(name, value).map_err(Failure::Usage)?;
+    }
+    Ok(limits)
 }
 
 impl Options {
@@ -134,12 +141,12 @@ pub fn with_flags(asked: &ArgMatches, mut settings: Settings) -> Result<Settings
 
 /// Refuses pictures that no machine should be asked for.
 pub fn check_size(Size { width, height }: Size, limits: &Limits) -> Result<(), String> {
-    let edge = limits.picture_edge;
-    if u64::from(width.max(height)) > edge {
-        return Err(format!("{width}x{height}: more than {edge} pixels a side; raise it with --limit picture-edge=N"));
+    let exceeds = |name, limit| Err(format!("{width}x{height}: {}", exceeded(name, limit)));
+    if u64::from(width.max(height)) > limits.picture_edge {
+        return exceeds("picture-edge", limits.picture_edge);
     }
-    if u64::from(width) * u64::from(height) > MAX_PIXELS {
-        return Err(format!("{width}x{height}: more than {MAX_PIXELS} pixels; choose a smaller size"));
+    if u64::from(width) * u64::from(height) > limits.picture_pixels {
+        return exceeds("picture-pixels", limits.picture_pixels);
     }
     Ok(())
 }
@@ -185,8 +192,10 @@ mod tests {
         for size in ["100000x100000", "32768x32768", "1x100000"] {
             let failure = options(&["raywalk", "render", "--size", size]).expect_err(size);
             assert_eq!(failure.exit_code(), Failure::WRONG_USAGE);
-            assert!(failure.to_string().starts_with(size));
+            assert!(failure.to_string().starts_with(size) && failure.to_string().contains("--limit picture-"));
         }
         assert!(options(&["raywalk", "render", "--size", "8192x8192"]).is_ok());
+        let raised = ["raywalk", "render", "--size", "32768x32768", "--limit", "picture-pixels=1073741824"];
+        assert!(options(&raised).is_ok());
     }
 }

@@ -1,26 +1,25 @@
-//! A progress bar for long runs and loads, on a terminal only.
+//! Progress bars, drawn by a thread of their own, on a terminal only.
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use raywalk::render::TileCount;
 use raywalk::scene;
 use std::io::{self, IsTerminal};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Work shorter than this shows no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 const REDRAW: Duration = Duration::from_millis(200);
 
-/// What a bar shows of frames.
-const OF_FRAMES: &str = "{spinner} {wide_bar} frame {pos}/{len}, {elapsed}, {eta} to go";
+/// What a bar shows of work whose end is known.
+const OF_STEPS: &str = "{spinner} {wide_bar} {msg}";
 /// What it shows of a load.
-const OF_LOAD: &str = "{spinner} {msg}, {elapsed}";
-/// What it shows of any other steps.
-const OF_STEPS: &str = "{spinner} {wide_bar} {percent}% {msg}, {elapsed}, {eta} to go";
+const OF_LOAD: &str = "{spinner} {msg}";
 
-/// Counts frames, or other steps, and shows how many are done; dropping it clears the bar.
+/// Counts steps and shows how many are done; dropping it clears the bar.
 #[derive(Debug)]
 pub struct Progress {
     done: Arc<AtomicU64>,
@@ -39,36 +38,42 @@ pub struct Drawing {
     thread: Option<JoinHandle<()>>,
 }
 
+/// How far some work has come.
+struct Standing {
+    done: u64,
+    what: String,
+}
+
 impl Progress {
-    /// Progress over `frames` frames; shows nothing if `quiet` or stderr is no terminal.
-    pub fn new(frames: u64, quiet: bool) -> Self {
-        Self::over(frames, OF_FRAMES, quiet)
+    /// Progress over so many tiles, which `count` counts; shows nothing if `quiet` or stderr is no terminal.
+    pub fn over_tiles(tiles: u64, count: TileCount, quiet: bool) -> Self {
+        Self::over(tiles, quiet, move |_| count.finished())
     }
 
     /// Progress over steps that are told by [`set`](Self::set).
     pub fn over_steps(steps: u64, quiet: bool) -> Self {
-        Self::over(steps, OF_STEPS, quiet)
+        Self::over(steps, quiet, |done| done)
     }
 
-    fn over(steps: u64, template: &'static str, quiet: bool) -> Self {
+    fn over(steps: u64, quiet: bool, position: impl Fn(u64) -> u64 + Send + 'static) -> Self {
         let (done, what) = (Arc::new(AtomicU64::new(0)), Arc::<Mutex<String>>::default());
         let (count, text) = (Arc::clone(&done), Arc::clone(&what));
-        let drawing = Drawing::start(steps, template, quiet, move |bar| {
-            bar.set_message(text.lock().unwrap_or_else(PoisonError::into_inner).clone());
-            bar.set_position(count.load(Ordering::Relaxed));
+        let drawing = Drawing::start(Some(steps), quiet, move || Standing {
+            done: position(count.load(Ordering::Relaxed)),
+            what: text.lock().unwrap_or_else(PoisonError::into_inner).clone(),
         });
         Self { done, what, _drawing: drawing }
     }
 
-    /// One more frame is done.
-    pub fn advance(&self) {
-        self.done.fetch_add(1, Ordering::Relaxed);
+    /// This is in work.
+    pub fn tell(&self, what: &str) {
+        what.clone_into(&mut self.what.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
     /// So many steps are done, and this is in work.
     pub fn set(&self, done: u64, what: &str) {
         self.done.store(done, Ordering::Relaxed);
-        what.clone_into(&mut self.what.lock().unwrap_or_else(PoisonError::into_inner));
+        self.tell(what);
     }
 }
 
@@ -76,37 +81,57 @@ impl Drawing {
     /// How far a load has come; nothing if `quiet` or stderr is no terminal.
     pub fn of_load(load: &scene::Progress, quiet: bool) -> Option<Self> {
         let load = load.clone();
-        Self::start(0, OF_LOAD, quiet, move |bar| bar.set_message(load.step().to_string()))
+        Self::start(None, quiet, move || Standing { done: 0, what: load.step().to_string() })
     }
 
-    fn start(
-        steps: u64,
-        template: &'static str,
-        quiet: bool,
-        tell: impl Fn(&ProgressBar) + Send + 'static,
-    ) -> Option<Self> {
+    fn start(steps: Option<u64>, quiet: bool, standing: impl Fn() -> Standing + Send + 'static) -> Option<Self> {
         if quiet || !io::stderr().is_terminal() {
             return None;
         }
         let (stop, stopped) = mpsc::channel();
-        let thread = thread::spawn(move || draw(steps, template, tell, &stopped));
+        let thread = thread::spawn(move || draw(steps, standing, &stopped));
         Some(Self { stop: Some(stop), thread: Some(thread) })
     }
 }
 
-fn draw(steps: u64, template: &str, tell: impl Fn(&ProgressBar), stopped: &mpsc::Receiver<()>) {
+fn draw(steps: Option<u64>, standing: impl Fn() -> Standing, stopped: &mpsc::Receiver<()>) {
+    let began = Instant::now();
     if stopped.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
         return;
     }
-    let bar = ProgressBar::new(steps);
-    if let Ok(style) = ProgressStyle::with_template(template) {
+    let bar = ProgressBar::new(steps.unwrap_or_default());
+    if let Ok(style) = ProgressStyle::with_template(if steps.is_some() { OF_STEPS } else { OF_LOAD }) {
         bar.set_style(style);
     }
     while stopped.recv_timeout(REDRAW) == Err(RecvTimeoutError::Timeout) {
+        let standing = standing();
         bar.tick();
-        tell(&bar);
+        bar.set_message(text(&standing, steps, began.elapsed()));
+        bar.set_position(standing.done);
     }
     bar.finish_and_clear();
+}
+
+/// What is said beside the bar: the share that is done, what is in work, the time it took so far, and the time that the rest
+/// takes at the same pace. Before the first step is done there is no pace.
+fn text(standing: &Standing, steps: Option<u64>, elapsed: Duration) -> String {
+    let Standing { done, what } = standing;
+    let mut parts = Vec::new();
+    if let Some(steps) = steps.filter(|steps| *steps > 0) {
+        parts.push(format!("{}%", (100 * done.min(&steps)) / steps));
+    }
+    if !what.is_empty() {
+        parts.push(what.clone());
+    }
+    parts.push(format!("{:#}", HumanDuration(elapsed)));
+    let left = steps.and_then(|steps| steps.checked_sub(*done)).filter(|left| *left > 0 && *done > 0);
+    if let Some(left) = left {
+        let seconds = elapsed.as_secs_f64() * left as f64 / *done as f64;
+        // Of centuries nobody needs to know more.
+        let rest = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+        parts.push(format!("{:#} to go", HumanDuration(rest)));
+    }
+    parts.join(", ")
 }
 
 impl Drop for Drawing {
@@ -116,5 +141,24 @@ impl Drop for Drawing {
             // A bar that failed to draw is no reason to fail.
             let _ = thread.join();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_estimate_follows_from_what_is_done_and_from_nothing_else() {
+        let said = |done, what: &str, steps, seconds| {
+            text(&Standing { done, what: what.to_owned() }, steps, Duration::from_secs(seconds))
+        };
+        assert_eq!(said(0, "", Some(200), 30), "0%, 30s");
+        assert_eq!(said(50, "", Some(200), 30), "25%, 30s, 2m to go");
+        assert_eq!(said(1, "frame 1 of 9", Some(100), 2), "1%, frame 1 of 9, 2s, 3m to go");
+        assert_eq!(said(200, "", Some(200), 30), "100%, 30s", "it is being written");
+        assert_eq!(said(300, "", Some(200), 30), "100%, 30s");
+        assert_eq!(said(0, "reading a.glb", None, 3), "reading a.glb, 3s");
+        assert!(said(1, "", Some(u64::MAX / 100), u64::MAX).contains("to go"));
     }
 }

@@ -14,12 +14,12 @@ use raywalk::measure::record::Subject;
 use raywalk::measure::run::{WARM_UP_FRAMES, timed_frame};
 use raywalk::measure::{MotionMeter, Record, Run};
 use raywalk::picture::WriteOptions;
-use raywalk::render::{Film, Planes, Scratch, render_frame};
+use raywalk::render::{Film, Planes, Scratch, TileCount, render_frame};
 use raywalk::settings::{Settings, Visibility};
 use std::path::{Path, PathBuf};
 
 /// Renders what `asked` says.
-pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
+pub fn run(asked: &ArgMatches, interrupt: &Interrupt) -> Result<(), Failure> {
     let options = Options::of(asked, Settings::exact)?;
     let write = WriteOptions { binary: asked.get_flag("binary") };
     let output = asked.get_one::<PathBuf>("output").map(PathBuf::as_path);
@@ -30,9 +30,8 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     }
     let frames = Frames::of(&options)?;
     let output = output.map(|path| Output::new(path, write, &frames)).transpose()?;
-    let interrupt = Interrupt::listen()?;
     let stage = Stage::set(&options)?;
-    render(&stage, &frames, &options, output, &interrupt)
+    render(&stage, &frames, &options, output, interrupt)
 }
 
 /// Renders `frames` of `stage`, and writes the pictures and the record asked for.
@@ -48,6 +47,7 @@ pub fn render(
     if let (Some(warning), false) = (&frames.warning, options.reading.quiet) {
         stdout::note(&format!("warning: {warning}"));
     }
+    frames.check(&stage.camera, &stage.scene)?;
     check_memory(width, height, options)?;
     if let Some(output) = &mut output {
         output.prepare(width, height, frames)?;
@@ -58,17 +58,24 @@ pub fn render(
     scratch.cancel = interrupt.token.clone();
     let planes = if options.map == Map::Picture { options.planes } else { options.map.planes() };
     let mut tracer = Tracer { stage, frames, interrupt, scratch, film: Film::new(width, height, planes) };
-    if record.is_some() {
-        let mut untimed = Run::default();
-        for _ in 0..WARM_UP_FRAMES {
-            tracer.trace(frames.range.start, &mut untimed)?;
-        }
-    }
-    let mut run = Run::default();
     let mut reference = options.reference.map(|visibility| Reference::new(visibility, stage));
     let mut exact = options.map.needs_exact().then(|| Reference::new(Visibility::Full, stage));
-    let progress = Progress::new(frames.range.end - frames.range.start, options.reading.quiet);
+    let (warm_up, count) =
+        (if record.is_some() { WARM_UP_FRAMES as u64 } else { 0 }, frames.range.end - frames.range.start);
+    let tiles = |settings| TileCount::of_frame(settings, width, height);
+    let of_references = reference.iter().chain(&exact).map(|reference| tiles(&reference.settings)).sum::<u64>();
+    let all =
+        (warm_up + count).saturating_mul(tiles(&stage.settings)).saturating_add(count.saturating_mul(of_references));
+    let progress = Progress::over_tiles(all, tracer.scratch.tiles.clone(), options.reading.quiet);
+    let mut untimed = Run::default();
+    for _ in 0..warm_up {
+        progress.tell("warming up");
+        tracer.trace(frames.range.start, &mut untimed)?;
+    }
+    let mut run = Run::default();
     for number in frames.range.clone() {
+        let what = format!("frame {} of {count}", number - frames.range.start + 1);
+        progress.tell(if count > 1 { &what } else { "" });
         tracer.trace(number, &mut run)?;
         if let Some(reference) = &mut reference {
             tracer.compare(number, reference)?;
@@ -77,14 +84,29 @@ pub fn render(
             tracer.paint(number, options.map, exact.as_mut())?;
             output.write(number, frames, &tracer.film)?;
         }
-        progress.advance();
     }
     drop(progress);
     interrupt.check()?;
+    if output.is_none() && !options.reading.quiet {
+        stdout::note(&timing(stage, &run));
+    }
     match record {
         Some(target) => target.write(&record_of(stage, &run, reference.as_ref())),
         None => Ok(()),
     }
+}
+
+/// What was done where nothing was written.
+fn timing(stage: &Stage, run: &Run) -> String {
+    let (frames, ms, cpu) = (run.frames(), run.frame_ms().median, run.cpu_ms().median);
+    let which = if frames == 1 { "1 frame".to_owned() } else { format!("{frames} frames") };
+    let median = if frames == 1 { "" } else { "a median of " };
+    let (scene, size) = (&stage.loaded.scene.name, stage.size);
+    format!(
+        "rendered {which} of {scene} at {}x{} in {median}{ms:.1} ms (CPU time {cpu:.1} ms) and wrote no picture; -o FILE.png \
+         writes one",
+        size.width, size.height
+    )
 }
 
 /// Measured: bytes a pixel of a picture while it is traced and written, without and with other planes.

@@ -19,7 +19,7 @@ const BUDGET: Duration = Duration::from_secs(40);
 const STEPS: f64 = 1000.0;
 
 /// Searches for what `asked` says.
-pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
+pub fn run(asked: &ArgMatches, interrupt: &Interrupt) -> Result<(), Failure> {
     let options = Options::of(asked, Settings::exact)?;
     output::check_planes(None, options.planes)?;
     if options.stats.is_some() {
@@ -35,7 +35,6 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     }
     let is_given = |name: &str| asked.value_source(name) == Some(ValueSource::CommandLine);
     let frames = Frames::of(&options)?;
-    let interrupt = Interrupt::listen()?;
     let stage = Stage::set(&options)?;
     if let (Some(warning), false) = (&frames.warning, options.reading.quiet) {
         stdout::note(&format!("warning: {warning}"));

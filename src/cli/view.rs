@@ -25,7 +25,7 @@ const PICTURE: &str = "raywalk.png";
 const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Opens the window, or else walks in the terminal, or else renders one frame.
-pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
+pub fn run(asked: &ArgMatches, interrupt: &Interrupt) -> Result<(), Failure> {
     let in_terminal = asked.get_flag("terminal");
     if in_terminal && !terminal::is_there() {
         let what = "standard input and output must be a terminal, and TERM must name it";
@@ -39,7 +39,6 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     let frames = Frames::of(&options)?;
     // Better known now than after the walk.
     options.stats.as_deref().map(RecordTarget::prepare).transpose()?;
-    let interrupt = Interrupt::listen()?;
     let load = load(&options)?;
     let size = options.view.size.unwrap_or(DEFAULT_SIZE);
     let file = options.reading.scene.clone().unwrap_or_default();
@@ -94,12 +93,12 @@ pub fn run(asked: &ArgMatches) -> Result<(), Failure> {
     match reason.filter(|_| !terminal::is_there()) {
         None => {
             let settings = settings(asked, &usual_settings())?;
-            super::terminal::walk(asked, &arrival, settings, &options, &interrupt)
+            super::terminal::walk(asked, &arrival, settings, &options, interrupt)
         }
         Some(reason) => {
             // A still picture has no hurry: it is what `render` makes of the same words.
             let options = Options::of(asked, Settings::exact)?;
-            picture(&stage_of(arrival, &options), &frames.first(), &options, &interrupt)?;
+            picture(&stage_of(arrival, &options), &frames.first(), &options, interrupt)?;
             let reason = reason.trim_end_matches('.');
             stdout::note(&format!("no window ({reason}): rendered one frame to {PICTURE}"));
             Ok(())

@@ -195,6 +195,8 @@ fn surfaces_lie_where_rays_hit_and_have_unit_normals() {
                     continue;
                 }
                 let (position, normal) = dispatch!(SimdToken::best(), simd => surface(simd, &geometry, ray, t));
+                let other = geometry.normal_at(0, position).expect("it has one");
+                assert!(normal.dot(other).abs() > 0.999, "{normal} {other}");
                 let unit = (normal.as_dvec3().length() - 1.0).abs();
                 assert!(unit < 1e-5, "{kind:?} {ray:?}: the normal {normal} is not a unit vector");
                 let point = ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(t);

@@ -435,6 +435,26 @@ impl Geometry {
         }
     }
 
+    /// Unit geometric normal of a primitive at `point`, which lies on it: outward for round shapes, as
+    /// [`plane_of`](Self::plane_of) has it for flat ones. `None` where it cannot be computed, as at the tip of a cone.
+    pub fn normal_at(&self, primitive: PrimitiveIndex, point: Vec3) -> Option<Vec3> {
+        let slot = self.slot(primitive);
+        let (block, place) = (slot.block as usize, usize::from(slot.place));
+        match slot.kind {
+            PrimitiveKind::Sphere => {
+                let [x, y, z, _] = self.spheres[block].get(place);
+                (point - Vec3::new(x, y, z)).try_normalize()
+            }
+            PrimitiveKind::Cone => {
+                let [x, y, z, ax, ay, az, _, _, slope] = self.cones[block].get(place);
+                let (from_middle, axis) = (point - Vec3::new(x, y, z), Vec3::new(ax, ay, az));
+                let outward = (from_middle - axis * from_middle.dot(axis)).try_normalize()?;
+                (outward - axis * slope).try_normalize()
+            }
+            _ => self.plane_of(primitive).map(|(normal, _)| normal),
+        }
+    }
+
     /// The corners of a triangle, in the kernel's order; 0 for other shapes.
     #[inline]
     pub fn corners_of(&self, primitive: PrimitiveIndex) -> [f32; 9] {

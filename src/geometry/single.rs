@@ -144,8 +144,8 @@ macro_rules! test {
             SphereTerms::Exact(terms) => {
                 Sphere::intersect_terms(&terms[$block].load($simd), $ray.rays.direction, $t_min)
             }
-            SphereTerms::Thesis(terms) => {
-                Sphere::intersect_thesis(&terms[$block].load($simd), $ray.rays.direction, $t_min)
+            SphereTerms::Difference(terms) => {
+                Sphere::intersect_difference(&terms[$block].load($simd), $ray.rays.direction, $t_min)
             }
         }
     };

@@ -17,10 +17,10 @@ pub enum SphereTerms<'a> {
     /// Centre minus origin, and r².
     Exact(&'a [Block<4>]),
     /// Centre minus origin, and |C-O|² - r².
-    Thesis(&'a [Block<4>]),
+    Difference(&'a [Block<4>]),
 }
 
-/// How a search goes about: the same hits whatever is chosen (but for [`SphereTerms::Thesis`]).
+/// How a search goes about: the same hits whatever is chosen (but for [`SphereTerms::Difference`]).
 #[derive(Clone, Copy, Debug)]
 pub struct Search<'a> {
     /// What is searched.
@@ -213,8 +213,8 @@ impl<'a> Search<'a> {
             SphereTerms::Exact(terms) => {
                 Sphere::intersect_terms(&terms[block].splat(simd, place), rays.direction, t_min)
             }
-            SphereTerms::Thesis(terms) => {
-                Sphere::intersect_thesis(&terms[block].splat(simd, place), rays.direction, t_min)
+            SphereTerms::Difference(terms) => {
+                Sphere::intersect_difference(&terms[block].splat(simd, place), rays.direction, t_min)
             }
         }
     }
@@ -319,15 +319,18 @@ impl Search<'_> {
 }
 
 impl Geometry {
-    /// The sphere terms of one origin, exact or in the thesis's form, written over `terms`.
-    pub fn fill_sphere_terms<S: Simd>(&self, simd: S, origin: glam::Vec3, thesis: bool, terms: &mut Vec<Block<4>>) {
+    /// The sphere terms of one origin, exact or as a difference, written over `terms`.
+    pub fn fill_sphere_terms<S: Simd>(&self, simd: S, origin: glam::Vec3, difference: bool, terms: &mut Vec<Block<4>>) {
         terms.clear();
         terms.extend_from_slice(&self.spheres);
         let origin = V3::splat(simd, origin);
         for (block, spheres) in terms.iter_mut().zip(&self.spheres) {
             let fields = spheres.fields.each_ref().map(|f| fearless_simd::f32x8::from_slice(simd, f));
-            let cached =
-                if thesis { Sphere::thesis_terms(&fields, origin) } else { Sphere::origin_terms(&fields, origin) };
+            let cached = if difference {
+                Sphere::difference_terms(&fields, origin)
+            } else {
+                Sphere::origin_terms(&fields, origin)
+            };
             for (field, value) in block.fields.iter_mut().zip(cached) {
                 value.store_slice(field);
             }

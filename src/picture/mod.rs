@@ -19,6 +19,6 @@ pub use eight_bit::EightBit;
 pub use error::PictureError;
 pub use format::{FORMATS, Format, WriteOptions};
 pub use numbered::NumberedName;
-pub use pending_file::PendingFile;
-pub use read::{Encoding, MAX_PIXELS, Picture, read};
+pub use pending_file::{PendingFile, exit};
+pub use read::{Encoding, Picture, read};
 pub use transfer::{srgb_decode, srgb_encode};

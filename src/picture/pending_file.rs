@@ -2,9 +2,31 @@
 
 use super::PictureError;
 use super::format::Sink;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The temporary files of this process, for [`exit`]. Whoever makes, renames or removes one holds the lock meanwhile.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    // A list of names is as good after a panic as before.
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Ends the process at once from any thread, but leaves no temporary file behind.
+///
+/// For requests to end that cannot wait for whoever writes a file.
+pub fn exit(code: i32) -> ! {
+    // Held to the end, so that no other thread begins or completes a file meanwhile.
+    let unfinished = unfinished();
+    for temporary in unfinished.iter() {
+        // Nobody is left to hear of a failure.
+        let _ = fs::remove_file(temporary);
+    }
+    std::process::exit(code)
+}
 
 /// A file being written: made under a temporary name beside its target, renamed by [`commit`](Self::commit),
 /// removed when dropped before.
@@ -36,14 +58,15 @@ impl PendingFile {
     /// # Errors
     /// [`PictureError::Io`] when the folder is missing or not writable.
     pub fn beside(path: &Path) -> Result<Self, PictureError> {
-        let (temporary, file) = create_beside(path).map_err(PictureError::io(path, "write"))?;
+        let (temporary, file) = create_beside(path, None).map_err(PictureError::io(path, "write"))?;
         let (asked, target) = (path.to_owned(), path.to_owned());
         Ok(Self { asked, target, temporary: Some(temporary), file: Some(BufWriter::new(file)) })
     }
 
     fn open(path: &Path) -> io::Result<Self> {
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        if let Ok(metadata) = fs::metadata(&target) {
+        let old = fs::metadata(&target).ok();
+        if let Some(metadata) = &old {
             if metadata.is_dir() {
                 return Err(io::ErrorKind::IsADirectory.into());
             }
@@ -55,7 +78,7 @@ impl PendingFile {
                 return Err(io::ErrorKind::PermissionDenied.into());
             }
         }
-        let (temporary, file) = create_beside(&target)?;
+        let (temporary, file) = create_beside(&target, old.as_ref())?;
         Ok(Self { asked: path.to_owned(), target, temporary: Some(temporary), file: Some(BufWriter::new(file)) })
     }
 
@@ -83,7 +106,14 @@ impl PendingFile {
     ) -> Result<(), PictureError> {
         self.write(encode)?;
         if let Some(temporary) = &self.temporary {
+            if let Ok(old) = fs::metadata(&self.target) {
+                // Again: it may have changed since this file was begun.
+                keep_access(&old, temporary);
+            }
+            let mut unfinished = unfinished();
             fs::rename(temporary, &self.target).map_err(PictureError::io(&self.asked, "write"))?;
+            unfinished.retain(|other| other != temporary);
+            drop(unfinished);
             self.temporary = None;
         }
         Ok(())
@@ -102,7 +132,10 @@ impl PendingFile {
         self.write(encode)?;
         let Some(temporary) = &self.temporary else { return Ok(self.asked.clone()) };
         for name in names {
-            match claim(temporary, &name) {
+            let unfinished = unfinished();
+            let claimed = claim(temporary, &name);
+            drop(unfinished);
+            match claimed {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 // Dropped after this, the file goes under its temporary name, if it still has that.
                 result => return result.map_err(PictureError::io(&name, "write")).map(|()| name),
@@ -127,8 +160,10 @@ impl Drop for PendingFile {
     fn drop(&mut self) {
         self.file = None;
         if let Some(temporary) = &self.temporary {
+            let mut unfinished = unfinished();
             // Nobody is left to hear of a failure, and the final name is untouched.
             let _ = fs::remove_file(temporary);
+            unfinished.retain(|other| other != temporary);
         }
     }
 }
@@ -145,18 +180,59 @@ fn claim(complete: &Path, name: &Path) -> io::Result<()> {
     }
 }
 
-/// A new file in the folder of `target`, hidden, and named after it and this process.
-fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
+/// A new file in the folder of `target`, hidden, and named after it and this process; as accessible as the `old` file that
+/// it is to replace.
+fn create_beside(target: &Path, old: Option<&Metadata>) -> io::Result<(PathBuf, File)> {
     let name = target.file_name().ok_or(io::ErrorKind::InvalidFilename)?.to_string_lossy();
+    let mut unfinished = unfinished();
     // A run that was killed may have left its file under the same process number.
     for attempt in 0..100 {
         let temporary = target.with_file_name(format!(".{name}.{}-{attempt}.part", std::process::id()));
-        match OpenOptions::new().write(true).create_new(true).open(&temporary) {
+        match new_file(old).open(&temporary) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-            result => return result.map(|file| (temporary, file)),
+            Err(error) => return Err(error),
+            Ok(file) => {
+                unfinished.push(temporary.clone());
+                if let Some(old) = old {
+                    keep_access(old, &temporary);
+                }
+                return Ok((temporary, file));
+            }
         }
     }
     Err(io::ErrorKind::AlreadyExists.into())
+}
+
+/// Opens a new file, from the first moment for nobody who cannot open the `old` one.
+fn new_file(old: Option<&Metadata>) -> OpenOptions {
+    let mut options = OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    if let Some(old) = old {
+        use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
+        options.mode(old.mode() & 0o777);
+    }
+    #[cfg(not(unix))]
+    let _ = old;
+    options
+}
+
+/// Gives `new` the owner and the mode of the `old` file, as far as the system lets.
+fn keep_access(old: &Metadata, new: &Path) {
+    #[cfg(unix)]
+    if let Ok(metadata) = fs::metadata(new) {
+        use std::os::unix::fs::{MetadataExt, chown};
+        // One at a time: a user may give a file away to a group of theirs, but not to another user. Before the mode, since
+        // some of its bits are lost with the owner.
+        if metadata.gid() != old.gid() {
+            let _ = chown(new, None, Some(old.gid()));
+        }
+        if metadata.uid() != old.uid() {
+            let _ = chown(new, Some(old.uid()), None);
+        }
+    }
+    // The contents matter more: a file system without modes is no reason to fail.
+    let _ = fs::set_permissions(new, old.permissions());
 }
 
 #[cfg(test)]
@@ -235,6 +311,45 @@ mod tests {
             let error = PendingFile::create(&bad).expect_err("not writable").to_string();
             assert!(error.contains("cannot write"), "{error}");
         }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_keeps_its_mode_when_it_is_replaced() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = Folder::new();
+        for mode in [0o600, 0o644, 0o666, 0o755, 0o200] {
+            let target = folder.write("a.png", b"old");
+            let mode_of = |path: &Path| fs::metadata(path).expect("there").permissions().mode() & 0o7777;
+            let set = |mode| fs::set_permissions(&target, fs::Permissions::from_mode(mode)).expect("ours");
+            set(mode);
+            let pending = PendingFile::create(&target).expect("writable");
+            let name = folder.names().into_iter().find(|name| PendingFile::is_leftover(name)).expect("it was begun");
+            assert_eq!(mode_of(&folder.path().join(name)), mode, "{mode:o}: no one else reads it meanwhile");
+            pending.commit(|sink| Ok(sink.write_all(b"new")?)).expect("written");
+            assert_eq!(mode_of(&target), mode, "{mode:o}");
+            let pending = PendingFile::create(&target).expect("writable");
+            set(0o640);
+            pending.commit(|sink| Ok(sink.write_all(b"new")?)).expect("written");
+            assert_eq!(mode_of(&target), 0o640, "changed meanwhile");
+        }
+    }
+
+    #[test]
+    fn files_that_are_not_finished_are_known_until_they_are() {
+        let folder = Folder::new();
+        let known = || unfinished().iter().filter(|path| path.starts_with(folder.path())).count();
+        let [first, second, third] = ["a", "b", "c"].map(|name| folder.path().join(name));
+        let pending = [&first, &second].map(|path| PendingFile::create(path).expect("writable"));
+        let beside = PendingFile::beside(&third).expect("writable");
+        assert_eq!(known(), 3);
+        let [committed, dropped] = pending;
+        committed.commit(|_| Ok(())).expect("written");
+        drop(dropped);
+        assert_eq!(known(), 1);
+        beside.commit_to_free([third].into_iter(), |_| Ok(())).expect("free");
+        assert_eq!(known(), 0);
+        assert_eq!(folder.names().len(), 2);
     }
 
     #[cfg(unix)]

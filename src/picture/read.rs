@@ -2,15 +2,12 @@
 
 use super::PictureError;
 use super::transfer::{srgb_decode, srgb_encode};
+use crate::scene::limits::{self, Limits};
 use exr::prelude::{MetaData, ReadChannels, ReadLayers};
 use image::ColorType;
 use std::fs::{self, File};
 use std::io::{BufReader, Read};
 use std::path::Path;
-
-/// Most pixels of a picture that is read or rendered: 8192 x 8192. A damaged or hostile header must not
-/// make us ask the system for terabytes.
-pub const MAX_PIXELS: u64 = 1 << 26;
 
 /// The first bytes of every OpenEXR file.
 const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -55,8 +52,8 @@ impl Picture {
 ///
 /// # Errors
 /// [`PictureError::Io`] when the file cannot be read; [`PictureError::Decode`] when it is no such picture, is
-/// damaged, has more than [`MAX_PIXELS`], or holds infinities or values that are not numbers.
-pub fn read(path: &Path) -> Result<Picture, PictureError> {
+/// damaged, has more pixels than the limit `picture-pixels`, or holds infinities or values that are not numbers.
+pub fn read(path: &Path, limits: &Limits) -> Result<Picture, PictureError> {
     let metadata = fs::metadata(path).map_err(PictureError::io(path, "read"))?;
     if !metadata.is_file() {
         return Err(PictureError::decode(path, "not a regular file"));
@@ -64,7 +61,8 @@ pub fn read(path: &Path) -> Result<Picture, PictureError> {
     let mut magic = [0; 4];
     let mut file = File::open(path).map_err(PictureError::io(path, "read"))?;
     let is_exr = file.read_exact(&mut magic).is_ok() && magic == EXR_MAGIC;
-    let picture = if is_exr { read_exr(path)? } else { read_eight_or_sixteen_bit(path)? };
+    let most = limits.picture_pixels;
+    let picture = if is_exr { read_exr(path, most)? } else { read_eight_or_sixteen_bit(path, most)? };
     let not_finite = picture.pixels.iter().filter(|p| p.iter().any(|v| !v.is_finite())).count();
     if not_finite > 0 {
         return Err(PictureError::decode(path, format!("{not_finite} pixels are infinite or not a number")));
@@ -76,27 +74,28 @@ fn open(path: &Path) -> Result<BufReader<File>, PictureError> {
     File::open(path).map(BufReader::new).map_err(PictureError::io(path, "read"))
 }
 
-fn check_size(path: &Path, width: u64, height: u64) -> Result<(), PictureError> {
-    match width.checked_mul(height) {
-        Some(1..=MAX_PIXELS) => Ok(()),
-        _ => {
-            Err(PictureError::decode(path, format!("{width}x{height} pixels; between 1 and {MAX_PIXELS} can be read")))
-        }
-    }
+/// A damaged or hostile header must not make us ask the system for terabytes.
+fn check_size(path: &Path, width: u64, height: u64, most: u64) -> Result<(), PictureError> {
+    let message = match width.checked_mul(height) {
+        Some(0) => "no pixels".to_owned(),
+        Some(pixels) if pixels <= most => return Ok(()),
+        _ => limits::exceeded("picture-pixels", most),
+    };
+    Err(PictureError::decode(path, format!("{width}x{height}: {message}")))
 }
 
-fn read_eight_or_sixteen_bit(path: &Path) -> Result<Picture, PictureError> {
+fn read_eight_or_sixteen_bit(path: &Path, most: u64) -> Result<Picture, PictureError> {
     let decoded = |error: image::ImageError| PictureError::decode(path, error);
     let reader = || {
         let guessed = image::ImageReader::new(open(path)?).with_guessed_format();
         guessed.map_err(PictureError::io(path, "read"))
     };
     let (width, height) = reader()?.into_dimensions().map_err(decoded)?;
-    check_size(path, u64::from(width), u64::from(height))?;
+    check_size(path, u64::from(width), u64::from(height), most)?;
     let mut reader = reader()?;
     // The size was checked; 16 bytes a pixel is the most that a decoder holds.
     let mut limits = image::Limits::no_limits();
-    limits.max_alloc = Some(16 * MAX_PIXELS);
+    limits.max_alloc = Some(most.saturating_mul(16));
     reader.limits(limits);
     let image = reader.decode().map_err(decoded)?;
     // Grey is spread before it is divided, so that it is the same as its three channels written out.
@@ -112,11 +111,11 @@ fn read_eight_or_sixteen_bit(path: &Path) -> Result<Picture, PictureError> {
     Ok(Picture { width, height, pixels, encoding: Encoding::Srgb })
 }
 
-fn read_exr(path: &Path) -> Result<Picture, PictureError> {
+fn read_exr(path: &Path, most: u64) -> Result<Picture, PictureError> {
     let decoded = |error: exr::error::Error| PictureError::decode(path, error);
     let meta = MetaData::read_from_buffered(open(path)?, false).map_err(decoded)?;
     for header in &meta.headers {
-        check_size(path, header.layer_size.width() as u64, header.layer_size.height() as u64)?;
+        check_size(path, header.layer_size.width() as u64, header.layer_size.height() as u64, most)?;
     }
     let image = exr::prelude::read()
         .no_deep_data()
@@ -142,13 +141,18 @@ mod tests {
     use super::*;
     use crate::temporary::Folder;
 
+    /// The picture in a file, within the usual limits.
+    fn of(file: &Path) -> Result<Picture, PictureError> {
+        read(file, &Limits::default())
+    }
+
     #[test]
     fn sixteen_bits_keep_their_precision() {
         let image = image::ImageBuffer::<image::Luma<u16>, _>::from_raw(2, 1, vec![1_u16, 65_535]).expect("two pixels");
         let mut bytes = std::io::Cursor::new(Vec::new());
         image.write_to(&mut bytes, image::ImageFormat::Png).expect("memory takes it");
         let folder = Folder::new();
-        let picture = read(&folder.write("deep.png", bytes.get_ref())).expect("it is a picture");
+        let picture = of(&folder.write("deep.png", bytes.get_ref())).expect("it is a picture");
         assert_eq!((picture.width, picture.height, picture.encoding), (2, 1, Encoding::Srgb));
         assert_eq!(picture.pixels, [[1.0 / 65_535.0; 3], [1.0; 3]]);
     }
@@ -161,7 +165,7 @@ mod tests {
         let read_back = |name: &str, image: image::DynamicImage| {
             let mut bytes = std::io::Cursor::new(Vec::new());
             image.write_to(&mut bytes, image::ImageFormat::Png).expect("memory takes it");
-            read(&folder.write(name, bytes.get_ref())).expect("it is a picture")
+            of(&folder.write(name, bytes.get_ref())).expect("it is a picture")
         };
         for image in [image::DynamicImage::from(grey), image::DynamicImage::from(deep)] {
             let spread = if image.color() == ColorType::L8 {
@@ -179,7 +183,7 @@ mod tests {
         let file = folder.write("linear.exr", b"");
         exr::prelude::write_rgb_file(&file, 2, 1, |x, _| if x == 0 { (-1.0_f32, 0.5, 7.0) } else { (0.0, 0.0, 1.0) })
             .expect("writable");
-        let picture = read(&file).expect("it is an EXR");
+        let picture = of(&file).expect("it is an EXR");
         assert_eq!(picture.encoding, Encoding::Linear);
         assert_eq!(picture.pixels[0], [-1.0, 0.5, 7.0]);
         let shown = picture.encoded_as(Encoding::Srgb);
@@ -208,10 +212,10 @@ mod tests {
             ("nan.exr", &not_a_number),
         ];
         for (name, bytes) in cases {
-            let message = read(&folder.write(name, bytes)).expect_err(name).to_string();
+            let message = of(&folder.write(name, bytes)).expect_err(name).to_string();
             assert!(message.contains(name) && !message.contains('\n'), "{message}");
         }
-        assert!(read(Path::new("no/such/file.png")).expect_err("missing").to_string().contains("no/such/file.png"));
-        assert!(read(folder.path()).is_err());
+        assert!(of(Path::new("no/such/file.png")).expect_err("missing").to_string().contains("no/such/file.png"));
+        assert!(of(folder.path()).is_err());
     }
 }

@@ -83,6 +83,9 @@ pub(super) fn refine(token: SimdToken, frame: &Frame<'_>, pool: &Pool, film: &mu
     loop {
         pool.for_each_tile(frame.cancel, tiles, |tile, worker| {
             dispatch!(token, simd => refine_tile(simd, frame, &centres, first, tile, worker));
+            if first {
+                frame.tiles.add();
+            }
         });
         if frame.cancel.is_cancelled() || !cross_borders(tiles, tiles_across) {
             break;

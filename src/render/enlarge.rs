@@ -56,6 +56,11 @@ fn scaled(side: u32, scale: f32) -> u32 {
     ((side as f32 * scale).round() as u32).clamp(1, side)
 }
 
+/// The size of the picture that is traced for one of `width` x `height` pixels.
+pub(super) fn traced_size(width: u32, height: u32, scale: f32) -> [u32; 2] {
+    [width, height].map(|side| scaled(side, scale))
+}
+
 /// Renders a frame at the scale that the settings ask for.
 pub(super) fn render_scaled(
     scene: &Scene,
@@ -64,7 +69,7 @@ pub(super) fn render_scaled(
     scratch: &mut Scratch,
     film: &mut Film,
 ) -> FrameStats {
-    let size = [film.width(), film.height()].map(|side| scaled(side, settings.render_scale));
+    let size = traced_size(film.width(), film.height(), settings.render_scale);
     let is_such = |small: &Film| [small.width(), small.height()] == size && small.planes() == film.planes();
     let small = scratch.small.take().filter(is_such);
     let mut small = small.unwrap_or_else(|| Film::new(size[0], size[1], film.planes()));

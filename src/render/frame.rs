@@ -1,7 +1,7 @@
 //! The waist of the program: one frame from scene, camera and settings.
 
 use super::accumulate::Progress;
-use super::film::FilmTile;
+use super::film::{FilmTile, TILE};
 use super::plan::Plan;
 use super::resolve::Encoder;
 use super::tables::Tables;
@@ -17,7 +17,7 @@ use crate::scene::{Camera, Light, Scene};
 use crate::settings::{Settings, SphereCache, Supersample};
 use glam::Vec3;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
@@ -42,11 +42,37 @@ impl CancelToken {
     }
 }
 
+/// Counts finished tiles, so that another thread can tell how far a long frame has come.
+#[derive(Clone, Debug, Default)]
+pub struct TileCount(Arc<AtomicU64>);
+
+impl TileCount {
+    /// Tiles finished since it was made.
+    pub fn finished(&self) -> u64 {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// One more.
+    pub(super) fn add(&self) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// How many tiles a frame of `width` x `height` pixels counts.
+    pub fn of_frame(settings: &Settings, width: u32, height: u32) -> u64 {
+        let [across, down] = enlarge::traced_size(width, height, settings.render_scale);
+        let tiles = [across, down].map(|side| u64::from(side).div_ceil(TILE as u64)).iter().product::<u64>();
+        // Adaptive samples visit every tile again.
+        if settings.supersample == Supersample::Adaptive { 2 * tiles } else { tiles }
+    }
+}
+
 /// Everything a frame needs that outlives it: threads, queues, caches.
 #[derive(Debug)]
 pub struct Scratch {
     /// Stops a frame early.
     pub cancel: CancelToken,
+    /// How many tiles its frames have finished.
+    pub tiles: TileCount,
     /// The share of the proven margins that beams use: 1. With less they may lose what is seen; that is for tests of
     /// whether such a loss would be noticed.
     pub beam_margin: f32,
@@ -128,6 +154,7 @@ impl Scratch {
     pub fn new() -> Self {
         Self {
             cancel: CancelToken::default(),
+            tiles: TileCount::default(),
             beam_margin: 1.0,
             pool: None,
             tables: Tables::default(),
@@ -149,6 +176,7 @@ impl Default for Scratch {
 pub(super) struct Frame<'a> {
     pub scene: &'a Scene,
     pub cancel: &'a CancelToken,
+    pub tiles: &'a TileCount,
     pub settings: &'a Settings,
     pub plan: Plan,
     pub tables: &'a Tables,
@@ -205,7 +233,7 @@ pub fn render_frame(
         return enlarge::render_scaled(scene, camera, settings, scratch, film);
     }
     let token = SimdToken::new(settings.simd).unwrap_or_else(SimdToken::best);
-    let Scratch { cancel, beam_margin, pool, tables, sphere_terms, around_eye, objects, .. } = scratch;
+    let Scratch { cancel, tiles, beam_margin, pool, tables, sphere_terms, around_eye, objects, .. } = scratch;
     if tables.generation != Some(scene.generation) {
         *tables = Tables::new(scene);
     }
@@ -223,14 +251,15 @@ pub fn render_frame(
         super::inside::bodies_around(scene, tables, camera.eye, around_eye);
     }
     if plan.sphere_cache != SphereCache::Off {
-        let thesis = plan.sphere_cache == SphereCache::Thesis;
-        dispatch!(token, simd => scene.geometry.fill_sphere_terms(simd, camera.eye, thesis, sphere_terms));
+        let difference = plan.sphere_cache == SphereCache::Difference;
+        dispatch!(token, simd => scene.geometry.fill_sphere_terms(simd, camera.eye, difference, sphere_terms));
     }
     let view = camera.frame(film.width(), film.height());
     let axes = [view.right.normalize(), view.up.normalize(), view.forward];
     let frame = Frame {
         scene,
         cancel,
+        tiles,
         settings,
         plan,
         tables,
@@ -244,7 +273,7 @@ pub fn render_frame(
         sphere_terms: match plan.sphere_cache {
             SphereCache::Off => SphereTerms::None,
             SphereCache::On => SphereTerms::Exact(sphere_terms),
-            SphereCache::Thesis => SphereTerms::Thesis(sphere_terms),
+            SphereCache::Difference => SphereTerms::Difference(sphere_terms),
         },
         around_eye,
         keeps_seen: film.planes().any_seen() || plan.trails || settings.supersample == Supersample::Adaptive,
@@ -257,6 +286,7 @@ pub fn render_frame(
 
     pool.for_each_tile(cancel, &mut film.tiles, |film_tile, worker| {
         dispatch!(token, simd => tile::render(simd, &frame, film_tile, worker));
+        tiles.add();
     });
     film.assemble(pool.threads.as_ref());
     if settings.supersample == Supersample::Adaptive {
@@ -309,6 +339,26 @@ mod tests {
         for worker in &scratch.pool.expect("a frame was rendered").workers {
             let room = worker.lock().expect("no worker panicked").room();
             assert!(room < 21 * 2 * 64, "room for {room} rays and bodies after {rays} rays");
+        }
+    }
+
+    #[test]
+    fn tiles_are_counted_as_announced() {
+        let scene = panes();
+        for (supersample, render_scale) in [
+            (Supersample::Off, 1.0),
+            (Supersample::Off, 0.5),
+            (Supersample::Adaptive, 1.0),
+            (Supersample::Adaptive, 0.3),
+        ] {
+            let settings = Settings { depth: Some(2), supersample, render_scale, ..Settings::default() };
+            let (mut scratch, mut film) = (Scratch::new(), Film::new(200, 130, Planes::default()));
+            let tiles = scratch.tiles.clone();
+            for frames in 1..3 {
+                render_frame(&scene, &scene.cameras[0].camera, &settings, &mut scratch, &mut film);
+                let announced = TileCount::of_frame(&settings, 200, 130);
+                assert!(announced > 0 && tiles.finished() == frames * announced, "{settings:?}");
+            }
         }
     }
 

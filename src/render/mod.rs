@@ -40,7 +40,7 @@ mod trail;
 mod visibility;
 
 pub use film::{Film, Planes};
-pub use frame::{CancelToken, Scratch, render_frame, thread_count};
+pub use frame::{CancelToken, Scratch, TileCount, render_frame, thread_count};
 pub use ledger::{Decision, Obtained};
 pub use plan::Plan;
 pub use stats::FrameStats;

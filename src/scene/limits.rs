@@ -25,6 +25,8 @@ pub struct Limits {
     pub nesting: u64,
     /// Width and height of the picture that a scene may ask for.
     pub picture_edge: u64,
+    /// Pixels of a picture that is rendered, or read to be compared.
+    pub picture_pixels: u64,
 }
 
 /// One limit: its name on the command line, what it bounds, its default, its place.
@@ -110,6 +112,13 @@ const ROWS: &[Row] = &[
         ceiling: 65536,
         field: |l| &mut l.picture_edge,
     },
+    Row {
+        name: "picture-pixels",
+        help: "pixels of the picture, or of one that is compared",
+        default: 1 << 26,
+        ceiling: 1 << 32,
+        field: |l| &mut l.picture_pixels,
+    },
 ];
 
 impl Default for Limits {
@@ -126,6 +135,7 @@ impl Default for Limits {
             vertices: 0,
             nesting: 0,
             picture_edge: 0,
+            picture_pixels: 0,
         };
         for row in ROWS {
             *(row.field)(&mut limits) = row.default;

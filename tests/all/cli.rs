@@ -14,12 +14,12 @@ impl Bench {
         Self(Folder::new())
     }
 
-    fn path(&self, name: &str) -> PathBuf {
+    pub(super) fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
     /// The program with `line` as its arguments, with no display.
-    fn program(&self, line: &str) -> Command {
+    pub(super) fn program(&self, line: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_raywalk"));
         command.current_dir(self.0.path()).args(line.split_whitespace());
         for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
@@ -58,7 +58,7 @@ impl Bench {
         self.0.write(name, contents);
     }
 
-    fn read(&self, name: &str) -> Vec<u8> {
+    pub(super) fn read(&self, name: &str) -> Vec<u8> {
         fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
@@ -67,7 +67,7 @@ impl Bench {
         serde_json::from_str(&out).unwrap_or_else(|error| panic!("{line}: {error}: {out}"))
     }
 
-    fn names(&self) -> Vec<String> {
+    pub(super) fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(self.0.path()).expect("it exists");
         let mut names: Vec<_> =
             entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned()).collect();
@@ -76,7 +76,7 @@ impl Bench {
     }
 
     /// A picture of one colour, but for its last pixel.
-    fn picture(&self, name: &str, (width, height): (u32, u32), color: [u8; 3], last: [u8; 3]) {
+    pub(super) fn picture(&self, name: &str, (width, height): (u32, u32), color: [u8; 3], last: [u8; 3]) {
         let mut picture = image::RgbImage::from_pixel(width, height, image::Rgb(color));
         picture.put_pixel(width - 1, height - 1, image::Rgb(last));
         picture.save(self.path(name)).expect("writable");
@@ -87,7 +87,7 @@ pub(super) fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-const SCENE: &str = r#"{ "version": 1, "render": { "width": 24, "height": 16 },
+pub(super) const SCENE: &str = r#"{ "version": 1, "render": { "width": 24, "height": 16 },
     "cameras": { "front": { "position": [0, 0, 5], "look_at": [0, 0, 0] },
                  "above": { "position": [0, 5, 0.1], "look_at": [0, 0, 0] } },
     "lights": [ { "type": "point", "position": [3, 5, 4] } ],
@@ -488,27 +488,4 @@ fn maps_are_pictures_of_eight_bits() {
     assert!((1..pictures.len()).all(|i| !pictures[..i].contains(&pictures[i])), "two maps are alike");
     assert!(bench.refused(2, "render scene.json --map cost -o cost.exr").contains("--aov"));
     assert!(bench.refused(2, "render scene.json --map colour -o cost.png").contains("decisions"));
-}
-
-#[cfg(unix)]
-#[test]
-fn ctrl_c_is_exit_130_and_leaves_nothing() {
-    use std::time::Duration;
-    let bench = Bench::new();
-    bench.write("scene.json", SCENE);
-    let mut child = bench
-        .program("render scene.json --size 640x480 --frames 0..1000000 -o a.png --stats run.json")
-        .stderr(std::process::Stdio::null())
-        .spawn()
-        .expect("the program starts");
-    // The temporary file of the picture is the sign that frames are being traced.
-    let started = (0..6000).any(|_| {
-        std::thread::sleep(Duration::from_millis(10));
-        bench.names().len() > 2
-    });
-    assert!(started, "nothing was started");
-    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill is there");
-    assert!(sent.success());
-    assert_eq!(child.wait().expect("it ends").code(), Some(130));
-    assert_eq!(bench.names(), ["scene.json"]);
 }

@@ -6,6 +6,7 @@ mod adversary;
 mod bench;
 mod blit;
 mod cli;
+mod command_line;
 mod contacts;
 mod corpus;
 mod crowds;
@@ -34,6 +35,8 @@ mod reference;
 mod scene_errors;
 mod scene_files;
 mod scene_loading;
+#[cfg(unix)]
+mod signals;
 mod stress;
 mod subsampling;
 mod surfaces;

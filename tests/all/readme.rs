@@ -43,7 +43,7 @@ fn line(cells: &[&str]) -> String {
     format!("| {} |", cells.join(" | "))
 }
 
-/// Values with what they promise, the default first: `` `on`, `off`: same pixels; `thesis`: approximate ``.
+/// Values with what they promise, the default first: `` `on`, `off`: same pixels; `difference`: approximate ``.
 fn values(row: &Row) -> String {
     match &row.kind {
         Kind::Choice(choices) => {

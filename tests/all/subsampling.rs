@@ -1,4 +1,4 @@
-//! `--visibility subsample` and the thesis's sphere terms: approximations, and how good they have to be.
+//! `--visibility subsample` and cached differences of spheres: approximations, and how good they have to be.
 
 use crate::picture_bits::{film, render};
 use crate::temporary::load_text;
@@ -121,8 +121,8 @@ fn supersampling_is_the_mean_of_shifted_pictures() {
     }
 }
 
-/// A ball seen from afar, and the share of pixels that the thesis's terms change.
-fn thesis_terms_change(distance: f32) -> f64 {
+/// A ball seen from afar, and the share of pixels that the cached difference changes.
+fn difference_terms_change(distance: f32) -> f64 {
     let text = format!(
         r#"{{ "version": 1, "camera": {{ "position": [0, 0, {distance}], "look_at": [0, 0, 0], "fov": {} }},
               "lights": [ {{ "type": "directional", "direction": [1, -1, -1] }} ],
@@ -131,13 +131,13 @@ fn thesis_terms_change(distance: f32) -> f64 {
     );
     let scene = load_text(text).unwrap();
     let camera = scene.cameras[0].camera;
-    let [exact, thesis] = [SphereCache::On, SphereCache::Thesis]
+    let [exact, difference] = [SphereCache::On, SphereCache::Difference]
         .map(|sphere_cache| render(&scene, &camera, &Settings { sphere_cache, ..Settings::exact() }, (64, 64)));
-    wrong(&exact, &thesis)
+    wrong(&exact, &difference)
 }
 
 #[test]
-fn the_thesis_terms_agree_nearby_and_cancel_far_away() {
-    assert!(thesis_terms_change(4.0) < 0.001);
-    assert!(thesis_terms_change(20_000.0) > 0.05);
+fn the_difference_terms_agree_nearby_and_cancel_far_away() {
+    assert!(difference_terms_change(4.0) < 0.001);
+    assert!(difference_terms_change(20_000.0) > 0.05);
 }

@@ -168,7 +168,7 @@ fn keys_walk_and_q_leaves() {
 #[test]
 fn ctrl_c_and_signals_give_the_terminal_back() {
     // Without a display no flag is needed.
-    for (end, code) in [("C-c", 130), ("-TERM", 143), ("-HUP", 129), ("-INT", 130)] {
+    for (end, code) in [("C-c", 130), ("-TERM", 143), ("-HUP", 129), ("-INT", 130), ("-QUIT", 131)] {
         let Some(walk) = Walk::start(&[], "truecolor") else { return };
         walk.rests("the first picture", "");
         match end.strip_prefix('-') {

@@ -14,7 +14,7 @@ pub const METHODS: [Method; 8] = [
     ("color 8", || subsample(Fill::Color, 8)),
     ("balanced", Settings::balanced),
     ("fast", Settings::fast),
-    ("thesis", || Settings { sphere_cache: SphereCache::Thesis, ..Settings::exact() }),
+    ("difference", || Settings { sphere_cache: SphereCache::Difference, ..Settings::exact() }),
 ];
 
 /// Subsampling with a fill and a stride.
@@ -27,7 +27,7 @@ pub fn subsample(fill: Fill, stride: u32) -> Settings {
 /// A failing test prints the table as it is now, `cargo test --release --test stability fails -- --nocapture` always.
 #[rustfmt::skip]
 pub const RATES: &[(&str, [f64; METHODS.len() + 1])] = &[
-    //                               hit 2   hit 8  hit 16 color 2 color 8 balanced  fast  thesis  double
+    //                               hit 2   hit 8  hit 16 color 2 color 8 balanced  fast  differ. double
     ("along_planes",               [  0.09,   0.71,   1.17,   0.48,   1.73,   0.00,  22.59,   0.00,   1.07]),
     ("band_borders",               [  0.74,   3.61,   3.77,   0.82,   3.31,   0.00,  53.48,   0.00,   0.47]),
     ("blocker",                    [  0.43,   0.88,   0.88,   1.13,   2.46,   0.00,  12.21,   0.00,   0.00]),

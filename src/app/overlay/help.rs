@@ -56,7 +56,7 @@ const TOPICS: [(&str, &str); 8] = [
     (
         "Caches",
         "shadow-cache tests what blocked a light last time before anything else; sphere-cache computes once what all \
-         rays from one place share. Both keep the pixels. sphere-cache thesis subtracts the squared radius beforehand, \
+         rays from one place share. Both keep the pixels. sphere-cache difference subtracts the squared radius beforehand, \
          which cancels for spheres that are far away.",
     ),
     (

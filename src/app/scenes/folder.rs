@@ -1,4 +1,4 @@
-//! What is meant by a path that was dropped or chosen: a scene file, or the one in a folder.
+//! What is meant by a path that was dropped, chosen or typed: a scene file, or the one in a folder.
 
 use crate::scene::Format;
 use crate::scene::path::CameraPath;

@@ -20,6 +20,7 @@ mod report;
 mod trials;
 mod watch;
 
+pub use folder::{NoScene, scene_file};
 pub use load::{Arrival, Failed, Load, Outcome, place_of};
 pub use recent::RecentFiles;
 pub use report::{Failure, Loading, Report};
@@ -423,7 +424,7 @@ impl Drop for Scenes {
 }
 
 fn load_file(path: &Path, options: &LoadOptions) -> Outcome {
-    let file = folder::scene_file(path)?;
+    let file = scene_file(path)?;
     let began = Instant::now();
     let scene = scene::load(&file, options)?;
     Ok(Arrival {

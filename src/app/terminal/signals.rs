@@ -1,4 +1,4 @@
-//! Requests to end from outside: SIGINT, SIGTERM and SIGHUP become words to the walk, so that the terminal is given back.
+//! Requests to end from outside: SIGINT, SIGTERM, SIGHUP and SIGQUIT become words to the walk, so that the terminal is given back.
 
 use std::io;
 
@@ -6,7 +6,7 @@ use std::io;
 mod unix {
     use super::io;
     use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
     use signal_hook::iterator::{Handle, Signals};
     use std::time::Duration;
 
@@ -21,7 +21,7 @@ mod unix {
         /// Sends `word` of each signal from now on. To be called while the terminal is still as it was.
         pub fn start(word: impl Fn(i32) + Send + 'static) -> io::Result<Self> {
             let before = tcgetattr(io::stdin()).ok();
-            let mut signals = Signals::new([SIGHUP, SIGINT, SIGTERM])?;
+            let mut signals = Signals::new([SIGHUP, SIGINT, SIGQUIT, SIGTERM])?;
             let handle = signals.handle();
             let listen = move || {
                 if let Some(signal) = signals.forever().next() {
@@ -30,7 +30,7 @@ mod unix {
                     if let Some(before) = before.filter(|_| !signals.handle().is_closed()) {
                         // As much as can be done without its help.
                         let _ = tcsetattr(io::stdin(), OptionalActions::Now, &before);
-                        std::process::exit(128 + signal);
+                        crate::picture::exit(128 + signal);
                     }
                 }
             };

@@ -4,6 +4,8 @@ mod body;
 mod gait;
 mod pace;
 #[cfg(test)]
+mod slopes;
+#[cfg(test)]
 mod trials;
 
 use super::input::Motion;

@@ -27,9 +27,9 @@ impl Sphere {
         [to_center.x, to_center.y, to_center.z, fields[3] * fields[3]]
     }
 
-    /// As [`origin_terms`](Self::origin_terms), in the thesis's form: the last term is |C-O|² - r².
+    /// As [`origin_terms`](Self::origin_terms), but the last term is the difference |C-O|² - r².
     #[inline(always)]
-    pub fn thesis_terms<S: Simd, F: Lanes<S>>(fields: &[F; 4], origin: V3<F>) -> [F; 4] {
+    pub fn difference_terms<S: Simd, F: Lanes<S>>(fields: &[F; 4], origin: V3<F>) -> [F; 4] {
         let to_center = V3::new(fields[0], fields[1], fields[2]) - origin;
         [to_center.x, to_center.y, to_center.z, to_center.dot(to_center) - fields[3] * fields[3]]
     }
@@ -43,10 +43,10 @@ impl Sphere {
         roots(b, terms[3] - l.dot(l), t_min)
     }
 
-    /// Intersects with [`thesis_terms`](Self::thesis_terms) at hand. Approximate: b² - c cancels where the sphere is
+    /// Intersects with [`difference_terms`](Self::difference_terms) at hand. Approximate: b² - c cancels where the sphere is
     /// much farther away than its radius.
     #[inline(always)]
-    pub fn intersect_thesis<S: Simd, F: Lanes<S>>(terms: &[F; 4], direction: V3<F>, t_min: F) -> (F::Mask, F) {
+    pub fn intersect_difference<S: Simd, F: Lanes<S>>(terms: &[F; 4], direction: V3<F>, t_min: F) -> (F::Mask, F) {
         let b = V3::new(terms[0], terms[1], terms[2]).dot(direction);
         roots(b, b * b - terms[3], t_min)
     }

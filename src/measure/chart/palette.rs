@@ -35,7 +35,11 @@ const FAMILIES: &[Family] = &[
     Family { name: "hit", class: "f3", mark: "M0-5.5L5.5 4.5H-5.5z" },
     Family { name: "color", class: "f4", mark: "M0 5.5L5.5-4.5H-5.5z" },
     Family { name: "fast", class: "f5", mark: "M0-6.5L1.5-2L6-2L2.5 1L4 5.5L0 2.8L-4 5.5L-2.5 1L-6-2L-1.5-2z" },
-    Family { name: "thesis cache", class: "f6", mark: "M-1.8-5.5h3.6v3.7h3.7v3.6h-3.7v3.7h-3.6v-3.7h-3.7v-3.6h3.7z" },
+    Family {
+        name: "difference cache",
+        class: "f6",
+        mark: "M-1.8-5.5h3.6v3.7h3.7v3.6h-3.7v3.7h-3.6v-3.7h-3.7v-3.6h3.7z",
+    },
 ];
 
 fn family(name: &str) -> &'static Family {

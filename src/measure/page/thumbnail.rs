@@ -1,6 +1,7 @@
 //! Pictures as the page holds them: no wider than it shows them, so that it stays small. The folder keeps them whole.
 
 use crate::picture::{self, EightBit, Encoding};
+use crate::scene::Limits;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use std::path::Path;
@@ -20,7 +21,8 @@ pub enum Reduce {
 /// A file of `folder/pictures` as an address that holds it; `None` where it cannot be read, or lies elsewhere.
 pub fn of(folder: &Path, name: &str, kind: Reduce) -> Option<String> {
     let inside = name.strip_prefix("pictures/").filter(|rest| !rest.contains(['/', '\\']))?;
-    let picture = picture::read(&folder.join("pictures").join(inside)).ok()?.encoded_as(Encoding::Srgb);
+    let picture =
+        picture::read(&folder.join("pictures").join(inside), &Limits::default()).ok()?.encoded_as(Encoding::Srgb);
     let rgb = picture.pixels.iter().flatten().map(|value| (255.0 * value).round() as u8).collect();
     let reduced = reduced(&EightBit { width: picture.width, height: picture.height, rgb }, kind);
     let (media_type, bytes) = reduced.compact().ok()?;

@@ -33,7 +33,7 @@ const SWEEP: &[Entry] = &[
     ("exact", "min-weight 1/512", |s| s.min_weight = 1.0 / 512.0, false),
     ("exact", "min-weight 1/64", |s| s.min_weight = 1.0 / 64.0, false),
     ("exact", "min-weight 1/16", |s| s.min_weight = 1.0 / 16.0, false),
-    ("thesis cache", "thesis cache", |s| s.sphere_cache = SphereCache::Thesis, true),
+    ("difference cache", "difference cache", |s| s.sphere_cache = SphereCache::Difference, true),
     ("balanced", "balanced", balanced, true),
     ("balanced", "interpolated light", |s| s.fill = Fill::Color, false),
     ("hit", "hit 2", |s| subsample(s, Fill::Hit, 2), true),
@@ -59,7 +59,7 @@ const STABILITY: &[Entry] = &[
     ("color", "color 2", |s| subsample(s, Fill::Color, 2), false),
     ("color", "color 8", |s| subsample(s, Fill::Color, 8), true),
     ("fast", "fast", fast, true),
-    ("thesis cache", "thesis cache", |s| s.sphere_cache = SphereCache::Thesis, true),
+    ("difference cache", "difference cache", |s| s.sphere_cache = SphereCache::Difference, true),
 ];
 
 /// What is followed along a path.

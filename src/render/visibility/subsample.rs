@@ -1,5 +1,6 @@
-//! `--visibility subsample`: the thesis's own method. A coarse grid of pixels is traced; a cell whose corners match is
-//! filled in, any other is split, down to single pixels. Things thinner than a cell can be missed: that is its price.
+//! `--visibility subsample`: a coarse grid of pixels is traced; a cell whose corners match is filled in, any other is
+//! split, down to single pixels. Things thinner than a cell can be missed. The thesis skips the search of a pixel between
+//! two that hit the same object; the grid, the matching of four corners and the splitting of cells are ours.
 //!
 //! Cells lie on the grid of the tile's samples: from 4 x 4 on their pixels follow each other, and are filled a packet at
 //! a time. Those of a level are kept in that order too, so that the rays through their corners make coherent packets.

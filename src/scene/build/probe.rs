@@ -79,6 +79,11 @@ impl<'a> Probe<'a> {
         dispatch!(SimdToken::best(), simd => self.trace(simd, origin, &[direction], t_min, true))[0]
     }
 
+    /// How far away the first primitive is along one ray, seen or not, and which it is; [`NO_PRIMITIVE`] for none.
+    pub fn closest(&mut self, origin: Vec3, direction: Vec3, t_min: f32) -> (f32, PrimitiveIndex) {
+        dispatch!(SimdToken::best(), simd => self.trace(simd, origin, &[direction], t_min, false))[0]
+    }
+
     fn trace<S: Simd>(
         &mut self,
         simd: S,

@@ -11,7 +11,7 @@ pub mod node;
 pub mod object;
 pub mod problem;
 pub mod render;
-mod suggest;
+pub mod suggest;
 pub mod texture;
 pub mod transform;
 pub mod value;

@@ -10,10 +10,12 @@
 //! target and field of view each follow a cubic Hermite spline whose tangents are the three-point differences of
 //! their neighbours (Catmull-Rom for keys evenly spaced in time). A key without `fov` takes that of the camera which
 //! the walk starts from; its near and far limits hold for the whole path, and so does its `up`, unless the path gives
-//! one (`"up": [0, 1, 0]`) beside `fps`. A key may give another `up`, which holds from it on.
+//! one (`"up": [0, 1, 0]`) beside `fps`. A key may give another `up`, which holds from it on. Where the camera looks along
+//! its `up`, the picture's up is carried over from the frame before.
 
 mod curve;
 mod fit;
+mod upright;
 
 pub use fit::{Sample, Tolerance};
 
@@ -201,6 +203,11 @@ impl CameraPath {
     }
 
     fn camera_at(&self, t: f64, base: &Camera, origin: DVec3) -> Camera {
+        self.upright(t, self.by_keys(t, base, origin), base, origin)
+    }
+
+    /// The camera as the keys have it, whether or not it has a view.
+    fn by_keys(&self, t: f64, base: &Camera, origin: DVec3) -> Camera {
         let after = self.keys.partition_point(|key| key.t <= t);
         let key = &self.keys[after.saturating_sub(1)];
         let base = Camera { up: key.up.map_or(base.up, |up| DVec3::from(up).as_vec3()), ..*base };
