@@ -47,7 +47,7 @@ pub fn render(
     if let (Some(warning), false) = (&frames.warning, options.reading.quiet) {
         stdout::note(&format!("warning: {warning}"));
     }
-    frames.check(&stage.camera, &stage.scene)?;
+    frames.check(&stage.camera, &stage.loaded.scene)?;
     check_memory(width, height, options)?;
     if let Some(output) = &mut output {
         output.prepare(width, height, frames)?;

@@ -334,6 +334,11 @@ impl<S> Window<S> {
 
 impl<S: Simd> Visitor<S> for Window<S> {
     #[inline(always)]
+    fn passes_backs(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
     fn t_min(&self, _primitive: PrimitiveIndex) -> S::f32s {
         S::f32s::splat(self.simd, self.after)
     }
