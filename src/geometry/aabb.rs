@@ -49,6 +49,11 @@ impl Aabb {
         self.min.cmple(other.max).all() && self.max.cmpge(other.min).all()
     }
 
+    /// Whether a point lies in it.
+    pub fn holds(&self, point: Vec3) -> bool {
+        self.min.cmple(point).all() && self.max.cmpge(point).all()
+    }
+
     /// The box with its faces moved outward by `distance`.
     pub fn padded(self, distance: f32) -> Self {
         Self { min: self.min - distance, max: self.max + distance }

@@ -14,9 +14,19 @@ const TOLERANCE: f64 = 1.0 / (1 << 17) as f64;
 /// Sine of the angle up to which flat primitives are parallel: others meet in a line, which no ray hits.
 const PARALLEL: f64 = 1e-2;
 
-/// The primitives that touch another one, where either of the two is transparent.
+/// More places of one primitive are taken together.
+const MOST_PLACES: usize = 8;
+
+/// The primitives that touch another one, where either of the two is transparent, and where they do.
 #[derive(Clone, Debug, Default)]
-pub struct Contacts(Vec<PrimitiveIndex>);
+pub struct Contacts {
+    /// Ascending.
+    primitives: Vec<PrimitiveIndex>,
+    /// Where the places of each begin, and where the last ones end.
+    starts: Vec<u32>,
+    /// Boxes around what touches.
+    places: Vec<Aabb>,
+}
 
 impl Contacts {
     /// Finds them; `is_transparent` tells of an object whether light passes through it.
@@ -27,36 +37,49 @@ impl Contacts {
             geometry.overlapping(&surface.bounds.padded(surface.tolerance() as f32), &mut |other| {
                 // Of two transparent primitives, the first finds the pair.
                 let counts_twice = other <= primitive && is_transparent(geometry.object_of(other));
-                if !counts_twice && surface.touches(&Surface::new(geometry, other)) {
-                    found.extend([primitive, other]);
+                let place = if counts_twice { None } else { surface.contact(&Surface::new(geometry, other)) };
+                if let Some(place) = place {
+                    found.extend([(primitive, place), (other, place)]);
                 }
             });
             found
         };
         let transparent: Vec<u32> = (0..objects).filter(|&object| is_transparent(object)).collect();
-        let mut primitives: Vec<PrimitiveIndex> = transparent
+        let mut found: Vec<(PrimitiveIndex, Aabb)> = transparent
             .into_par_iter()
             .flat_map(|object| geometry.indices_of(object).into_par_iter())
             .flat_map_iter(touching)
             .collect();
-        primitives.par_sort_unstable();
-        primitives.dedup();
-        Self(primitives)
+        found.par_sort_by_key(|(primitive, _)| *primitive);
+        let mut contacts = Self::default();
+        for own in found.chunk_by(|a, b| a.0 == b.0) {
+            contacts.primitives.push(own[0].0);
+            contacts.starts.push(contacts.places.len() as u32);
+            let places = own.iter().map(|(_, place)| *place);
+            if own.len() > MOST_PLACES {
+                contacts.places.push(places.fold(Aabb::EMPTY, Aabb::union));
+            } else {
+                contacts.places.extend(places);
+            }
+        }
+        contacts.starts.push(contacts.places.len() as u32);
+        contacts
     }
 
-    /// How many there are.
+    /// How many primitives touch others.
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.primitives.len()
     }
 
     /// Whether nothing touches.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.primitives.is_empty()
     }
 
-    /// Whether a primitive is one of them.
-    pub fn contains(&self, primitive: PrimitiveIndex) -> bool {
-        self.0.binary_search(&primitive).is_ok()
+    /// Where a primitive touches others: boxes around those places. None for most.
+    pub fn places_of(&self, primitive: PrimitiveIndex) -> &[Aabb] {
+        let Ok(at) = self.primitives.binary_search(&primitive) else { return &[] };
+        &self.places[self.starts[at] as usize..self.starts[at + 1] as usize]
     }
 }
 
@@ -96,12 +119,28 @@ impl Surface {
         f64::from(self.bounds.min.abs().max(self.bounds.max.abs()).max_element()) * TOLERANCE
     }
 
-    fn touches(&self, other: &Self) -> bool {
+    /// A box around where two surfaces touch, if they do.
+    fn contact(&self, other: &Self) -> Option<Aabb> {
         let tolerance = self.tolerance().max(other.tolerance());
-        let padded = self.bounds.padded(tolerance as f32);
-        if !padded.overlaps(&other.bounds) {
-            return false;
+        let [own, others] = [self.bounds, other.bounds].map(|bounds| bounds.padded(tolerance as f32));
+        let both = Aabb { min: own.min.max(others.min), max: own.max.min(others.max) };
+        if both.is_empty() || !self.touches(other, &both, tolerance) {
+            return None;
         }
+        let ((&Form::Sphere { center, radius }, &Form::Flat { normal, point })
+        | (&Form::Flat { normal, point }, &Form::Sphere { center, radius })) = (&self.form, &other.form)
+        else {
+            return Some(both);
+        };
+        // A sphere leaves the plane that it touches at once.
+        let touched = center - normal * normal.dot(center - point);
+        let reach = (8.0 * radius * tolerance).sqrt() + tolerance;
+        let near = Aabb::from_points([touched - reach, touched + reach].map(|corner| corner.as_vec3()));
+        Some(Aabb { min: near.min.max(both.min), max: near.max.min(both.max) })
+    }
+
+    /// Whether surfaces touch whose bounds overlap in `both`.
+    fn touches(&self, other: &Self, both: &Aabb, tolerance: f64) -> bool {
         let same_object = self.object == other.object;
         match (&self.form, &other.form) {
             (&Form::Flat { normal, point }, &Form::Flat { normal: other_normal, point: other_point }) => {
@@ -109,8 +148,8 @@ impl Surface {
                 if same_object && normal.dot(other_normal) > 0.0 || normal.cross(other_normal).length() > PARALLEL {
                     return false;
                 }
-                let min = padded.min.max(other.bounds.min).max(Vec3::splat(-f32::MAX)).as_dvec3();
-                let max = padded.max.min(other.bounds.max).min(Vec3::splat(f32::MAX)).as_dvec3();
+                let min = both.min.max(Vec3::splat(-f32::MAX)).as_dvec3();
+                let max = both.max.min(Vec3::splat(f32::MAX)).as_dvec3();
                 let middle = (min + max) * 0.5;
                 let tilt = normal.cross(other_normal).length() * (max - min).length();
                 let height = |normal: DVec3, point: DVec3| normal.dot(middle - point);
@@ -171,7 +210,7 @@ mod tests {
     fn contacts(shapes: &[Shape]) -> Vec<PrimitiveIndex> {
         let part = |(object, &shape): (u32, &Shape)| Part::new(shape, PrimitiveId { object, primitive: 0 });
         let geometry = Geometry::build((0..).zip(shapes).map(part).collect());
-        Contacts::new(&geometry, shapes.len() as u32, |object| object == 0).0
+        Contacts::new(&geometry, shapes.len() as u32, |object| object == 0).primitives
     }
 
     const BALL: Shape = Shape::Sphere { center: Vec3::new(0.0, 1.0, 0.0), radius: 1.0 };

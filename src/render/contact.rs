@@ -13,9 +13,9 @@
 use super::frame::Frame;
 use super::gather::{Hits, surfaces, transmission};
 use super::leave::{self, FLATTEST};
-use super::queue::MOST_LANES;
+use super::queue::{MOST_LANES, RayQueue};
 use super::tile::Worker;
-use crate::geometry::{BLOCK, NO_PRIMITIVE, Packet, PrimitiveIndex, Search, Stack, Visitor};
+use crate::geometry::{Aabb, BLOCK, NO_PRIMITIVE, Packet, PrimitiveIndex, Search, Stack, Visitor};
 use crate::math::V3;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
@@ -166,20 +166,53 @@ impl Contacts {
     }
 }
 
+/// The links of the packet at `at`, if any of its hits is of a place where surfaces touch.
+#[inline(always)]
+pub(super) fn links<S: Simd>(simd: S, frame: &Frame<'_>, rays: &RayQueue, at: usize) -> Option<S::u32s> {
+    if !frame.plan.contacts {
+        return None;
+    }
+    let links = S::u32s::from_slice(simd, &rays.contact[at..at + S::f32s::LEN]);
+    links.simd_ne(S::u32s::splat(simd, NO_CONTACT)).any_true().then_some(links)
+}
+
 /// Replaces hits in `worker.rays` by what is met first in their place, and links the rest to them.
 pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
-    for at in 0..worker.rays.len() {
-        let link = worker.rays.contact[at];
-        if let Some(entry) = worker.contacts.get(link) {
-            (worker.rays.primitive[at], worker.rays.t[at]) = (entry.primitive, 0.0);
-        } else if worker.rays.primitive[at] != NO_PRIMITIVE && frame.tables.contacts.contains(worker.rays.primitive[at])
-        {
-            simd.vectorize(
-                #[inline(always)]
-                || resolve_ray(simd, frame, at, worker),
-            );
+    // Neighbours hit the same primitive, and most touch nothing.
+    let mut untouched = NO_PRIMITIVE;
+    for at in (0..worker.rays.len()).step_by(S::f32s::LEN) {
+        let lanes = at..at + S::f32s::LEN;
+        let primitives = S::u32s::from_slice(simd, &worker.rays.primitive[lanes.clone()]);
+        let links = S::u32s::from_slice(simd, &worker.rays.contact[lanes]);
+        let known = primitives.simd_eq(S::u32s::splat(simd, untouched))
+            | primitives.simd_eq(S::u32s::splat(simd, NO_PRIMITIVE));
+        if (known & links.simd_eq(S::u32s::splat(simd, NO_CONTACT))).all_true() {
+            continue;
+        }
+        for at in at..worker.rays.len().min(at + S::f32s::LEN) {
+            let primitive = worker.rays.primitive[at];
+            if let Some(entry) = worker.contacts.get(worker.rays.contact[at]) {
+                (worker.rays.primitive[at], worker.rays.t[at]) = (entry.primitive, 0.0);
+            } else if primitive != untouched && primitive != NO_PRIMITIVE {
+                let places = frame.tables.contacts.places_of(primitive);
+                if places.is_empty() {
+                    untouched = primitive;
+                } else if lies_in(places, &worker.rays, at) {
+                    simd.vectorize(
+                        #[inline(always)]
+                        || resolve_ray(simd, frame, at, worker),
+                    );
+                }
+            }
         }
     }
+}
+
+/// Whether a ray's hit lies in one of some places.
+fn lies_in(places: &[Aabb], rays: &RayQueue, at: usize) -> bool {
+    let (origin, t) = (rays.origin_of(at), rays.t[at]);
+    let (point, rounding) = (origin + rays.direction.get(at) * t, (origin.abs().max_element() + t) * ROUNDING);
+    places.iter().any(|place| place.padded(rounding).holds(point))
 }
 
 /// A surface in the place of a hit.

@@ -38,7 +38,7 @@ pub(super) struct Incident<'a, S: Simd> {
     pub weight: V3<S::f32s>,
     pub sample: S::u32s,
     pub media: S::u32s,
-    /// What touches the surface, if the plan looks at contacts.
+    /// What touches the surfaces, if anything does.
     pub contact: Option<S::u32s>,
     /// The primitive, where it is flat; else [`NO_PRIMITIVE`].
     pub flat: S::u32s,
@@ -127,7 +127,7 @@ pub(super) fn follow<S: Simd>(
         if heavy.any_true() {
             let direction = hold_unit::<S>(incident.direction + incident.normal.scale(cosine * 2.0));
             let start = leave::start::<S>(incident.position, incident.facing, incident.margin, direction);
-            let contact = incident.contact.map(|_| S::u32s::splat(simd, NO_CONTACT));
+            let contact = frame.plan.contacts.then(|| S::u32s::splat(simd, NO_CONTACT));
             let lineage = incident.lineage(incident.media, contact, incident.flat);
             mirrored.push_lanes::<S>(heavy, start, direction, weight, &lineage);
             counts.reflection += u64::from(heavy.to_bitmask().count_ones());
@@ -155,8 +155,10 @@ pub(super) fn follow<S: Simd>(
             }
             let start = leave::start::<S>(incident.position, -incident.facing, margin, split.inward);
             let nothing = S::u32s::splat(simd, NO_PRIMITIVE);
-            let contact =
-                incident.contact.map(|links| S::u32s::from_fn(simd, |lane| contacts.next(links.as_slice()[lane])));
+            let contact = frame.plan.contacts.then(|| match incident.contact {
+                Some(links) => S::u32s::from_fn(simd, |lane| contacts.next(links.as_slice()[lane])),
+                None => S::u32s::splat(simd, NO_CONTACT),
+            });
             refracted.push_lanes::<S>(heavy, start, split.inward, weight, &incident.lineage(inside, contact, nothing));
             counts.refraction += u64::from(heavy.to_bitmask().count_ones());
         }

@@ -2,6 +2,7 @@
 
 use super::absorption::absorb;
 use super::brdf::Reflectance;
+use super::contact;
 use super::direct::{Lit, light_gain};
 use super::frame::Frame;
 use super::gather::{Hits, Surfaces, surfaces, surfaces_of_one, surfaces_of_several};
@@ -207,7 +208,6 @@ fn shade_surfaces<S: Simd>(
 ) {
     let lanes = at..at + S::f32s::LEN;
     let Worker { rays, shadows, color: colors, seen, paint, contacts, .. } = worker;
-    let contact = &rays.contact;
     let paint = *paint;
     let samples = &rays.sample[lanes.clone()];
     let &Incoming { direction, weight, .. } = incoming;
@@ -252,11 +252,9 @@ fn shade_surfaces<S: Simd>(
     colors.deposit(simd, level == 1, samples, present::<S>(rays, at), own);
 
     // Light that falls on the surface comes through what lies before it in the same place.
-    let lit_weight = if frame.plan.contacts {
-        let links = S::u32s::from_slice(simd, &contact[lanes.clone()]);
-        covered * contacts.filter(simd, frame, links, [incoming.origin, direction])
-    } else {
-        covered
+    let lit_weight = match contact::links(simd, frame, rays, at) {
+        Some(links) => covered * contacts.filter(simd, frame, links, [incoming.origin, direction]),
+        None => covered,
     };
     let lit = Lit::<S> {
         active,
@@ -340,8 +338,8 @@ fn follow<S: Simd>(
             skin,
             weight: incoming.weight,
             sample: S::u32s::from_slice(simd, &rays.sample[lanes.clone()]),
-            media: S::u32s::from_slice(simd, &rays.media[lanes.clone()]),
-            contact: frame.plan.contacts.then(|| S::u32s::from_slice(simd, &rays.contact[lanes])),
+            media: S::u32s::from_slice(simd, &rays.media[lanes]),
+            contact: contact::links(simd, frame, rays, at),
             flat: flat.select(primitives, S::u32s::splat(simd, NO_PRIMITIVE)),
             way: incoming.way,
         };
