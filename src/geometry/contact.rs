@@ -1,21 +1,35 @@
 //! Surfaces that touch: pairs of primitives that lie in the same place, at least one of which lets light through.
 //!
 //! A ray starts a little off the surface that it leaves, and so beyond whatever touches that surface. Contacts are found
-//! once, when a scene is prepared: only rays that hit one of these primitives have to look for others in the same place.
+//! once, when a scene is loaded: only rays that hit one of these primitives have to look for others in the same place.
 
 use super::{Aabb, Geometry, PrimitiveIndex, PrimitiveKind};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// Primitives closer than this share of their largest coordinate touch. Four times the distance by which rays start off
-/// a surface, so that none is missed.
+/// Primitives closer than this share of their largest coordinate touch: four times the distance by which rays start off a
+/// surface of that scale.
 const TOLERANCE: f64 = 1.0 / (1 << 17) as f64;
 
-/// Sine of the angle up to which flat primitives are parallel: others meet in a line, which no ray hits.
+/// Sine of the angle up to which flat primitives are parallel: others meet in a strip that is thinner than a pixel.
 const PARALLEL: f64 = 1e-2;
 
 /// More places of one primitive are taken together.
 const MOST_PLACES: usize = 8;
+
+/// Candidates that are looked at for one transparent primitive, and at most for all of them together where that is more. More
+/// lie close together only in heaps of large transparent triangles.
+const CANDIDATES: usize = 1 << 10;
+const ALL_CANDIDATES: usize = 1 << 24;
+
+/// Where a primitive touches another.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// A box around it.
+    pub bounds: Aabb,
+    /// How far apart surfaces may be there.
+    pub tolerance: f32,
+}
 
 /// The primitives that touch another one, where either of the two is transparent, and where they do.
 #[derive(Clone, Debug, Default)]
@@ -24,32 +38,48 @@ pub struct Contacts {
     primitives: Vec<PrimitiveIndex>,
     /// Where the places of each begin, and where the last ones end.
     starts: Vec<u32>,
-    /// Boxes around what touches.
-    places: Vec<Aabb>,
+    places: Vec<Place>,
 }
 
 impl Contacts {
-    /// Finds them; `is_transparent` tells of an object whether light passes through it.
-    pub fn new(geometry: &Geometry, objects: u32, is_transparent: impl Fn(u32) -> bool + Sync) -> Self {
+    /// Finds them; `is_transparent` tells of an object whether light passes through it. `None` once `wanted` says no.
+    pub fn new(
+        geometry: &Geometry,
+        objects: u32,
+        is_transparent: impl Fn(u32) -> bool + Sync,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Self> {
+        let transparent: Vec<u32> = (0..objects).filter(|&object| is_transparent(object)).collect();
+        let count: usize = transparent.iter().map(|&object| geometry.indices_of(object).len()).sum();
+        let candidates = CANDIDATES.max(ALL_CANDIDATES / count.max(1));
+        let largest = f64::from(geometry.reach()) * TOLERANCE;
         let touching = |primitive: PrimitiveIndex| {
-            let surface = Surface::new(geometry, primitive);
             let mut found = Vec::new();
-            geometry.overlapping(&surface.bounds.padded(surface.tolerance() as f32), &mut |other| {
+            if !wanted() {
+                return found;
+            }
+            let surface = Surface::new(geometry, primitive);
+            let mut left = candidates;
+            geometry.overlapping(&surface.bounds.padded(largest as f32), &mut |other| {
                 // Of two transparent primitives, the first finds the pair.
-                let counts_twice = other <= primitive && is_transparent(geometry.object_of(other));
-                let place = if counts_twice { None } else { surface.contact(&Surface::new(geometry, other)) };
-                if let Some(place) = place {
+                if other == primitive || left == 0 || other < primitive && is_transparent(geometry.object_of(other)) {
+                    return;
+                }
+                left -= 1;
+                if let Some(place) = surface.contact(&Surface::new(geometry, other), largest) {
                     found.extend([(primitive, place), (other, place)]);
                 }
             });
             found
         };
-        let transparent: Vec<u32> = (0..objects).filter(|&object| is_transparent(object)).collect();
-        let mut found: Vec<(PrimitiveIndex, Aabb)> = transparent
+        let mut found: Vec<(PrimitiveIndex, Place)> = transparent
             .into_par_iter()
             .flat_map(|object| geometry.indices_of(object).into_par_iter())
             .flat_map_iter(touching)
             .collect();
+        if !wanted() {
+            return None;
+        }
         found.par_sort_by_key(|(primitive, _)| *primitive);
         let mut contacts = Self::default();
         for own in found.chunk_by(|a, b| a.0 == b.0) {
@@ -57,13 +87,13 @@ impl Contacts {
             contacts.starts.push(contacts.places.len() as u32);
             let places = own.iter().map(|(_, place)| *place);
             if own.len() > MOST_PLACES {
-                contacts.places.push(places.fold(Aabb::EMPTY, Aabb::union));
+                contacts.places.extend(places.reduce(Place::union));
             } else {
                 contacts.places.extend(places);
             }
         }
         contacts.starts.push(contacts.places.len() as u32);
-        contacts
+        Some(contacts)
     }
 
     /// How many primitives touch others.
@@ -76,10 +106,16 @@ impl Contacts {
         self.primitives.is_empty()
     }
 
-    /// Where a primitive touches others: boxes around those places. None for most.
-    pub fn places_of(&self, primitive: PrimitiveIndex) -> &[Aabb] {
+    /// Where a primitive touches others. None for most.
+    pub fn places_of(&self, primitive: PrimitiveIndex) -> &[Place] {
         let Ok(at) = self.primitives.binary_search(&primitive) else { return &[] };
         &self.places[self.starts[at] as usize..self.starts[at + 1] as usize]
+    }
+}
+
+impl Place {
+    fn union(self, other: Self) -> Self {
+        Self { bounds: self.bounds.union(other.bounds), tolerance: self.tolerance.max(other.tolerance) }
     }
 }
 
@@ -119,9 +155,10 @@ impl Surface {
         f64::from(self.bounds.min.abs().max(self.bounds.max.abs()).max_element()) * TOLERANCE
     }
 
-    /// A box around where two surfaces touch, if they do.
-    fn contact(&self, other: &Self) -> Option<Aabb> {
-        let tolerance = self.tolerance().max(other.tolerance());
+    /// Where two surfaces touch, if they do; `largest` is the tolerance of two that have no size.
+    fn contact(&self, other: &Self, largest: f64) -> Option<Place> {
+        let both_infinite = !self.bounds.is_finite() && !other.bounds.is_finite();
+        let tolerance = if both_infinite { largest } else { self.tolerance().max(other.tolerance()) };
         let [own, others] = [self.bounds, other.bounds].map(|bounds| bounds.padded(tolerance as f32));
         let both = Aabb { min: own.min.max(others.min), max: own.max.min(others.max) };
         if both.is_empty() || !self.touches(other, &both, tolerance) {
@@ -130,13 +167,14 @@ impl Surface {
         let ((&Form::Sphere { center, radius }, &Form::Flat { normal, point })
         | (&Form::Flat { normal, point }, &Form::Sphere { center, radius })) = (&self.form, &other.form)
         else {
-            return Some(both);
+            return Some(Place { bounds: both, tolerance: tolerance as f32 });
         };
         // A sphere leaves the plane that it touches at once.
         let touched = center - normal * normal.dot(center - point);
         let reach = (8.0 * radius * tolerance).sqrt() + tolerance;
         let near = Aabb::from_points([touched - reach, touched + reach].map(|corner| corner.as_vec3()));
-        Some(Aabb { min: near.min.max(both.min), max: near.max.min(both.max) })
+        let bounds = Aabb { min: near.min.max(both.min), max: near.max.min(both.max) };
+        Some(Place { bounds, tolerance: tolerance as f32 })
     }
 
     /// Whether surfaces touch whose bounds overlap in `both`.
@@ -210,7 +248,7 @@ mod tests {
     fn contacts(shapes: &[Shape]) -> Vec<PrimitiveIndex> {
         let part = |(object, &shape): (u32, &Shape)| Part::new(shape, PrimitiveId { object, primitive: 0 });
         let geometry = Geometry::build((0..).zip(shapes).map(part).collect());
-        Contacts::new(&geometry, shapes.len() as u32, |object| object == 0).primitives
+        Contacts::new(&geometry, shapes.len() as u32, |object| object == 0, &|| true).unwrap().primitives
     }
 
     const BALL: Shape = Shape::Sphere { center: Vec3::new(0.0, 1.0, 0.0), radius: 1.0 };
@@ -264,7 +302,7 @@ mod tests {
                 Part::new(Shape::Triangle { vertices }, PrimitiveId { object: 0, primitive })
             };
             let geometry = Geometry::build((0..).zip(corners).map(part).collect());
-            Contacts::new(&geometry, 1, |_| true).len()
+            Contacts::new(&geometry, 1, |_| true, &|| true).unwrap().len()
         };
         assert_eq!(contacts([[a, b, c], [a, c, d]]), 0);
         assert_eq!(contacts([[a, b, c], [a, c, b]]), 2);

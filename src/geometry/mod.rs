@@ -30,7 +30,7 @@ pub mod visitor;
 
 pub use aabb::Aabb;
 pub use block::{BLOCK, Block, NO_PRIMITIVE, PrimitiveIndex};
-pub use contact::Contacts;
+pub use contact::{Contacts, Place};
 pub use holes::{HoleMap, Holes, Wrap};
 pub use instance::{Home, Instance, Instances, SharedMesh};
 pub use mesh::Mesh;

@@ -12,10 +12,10 @@
 
 use super::frame::Frame;
 use super::gather::{Hits, surfaces, transmission};
-use super::leave::{self, FLATTEST};
 use super::queue::{MOST_LANES, RayQueue};
+use super::tables::Row;
 use super::tile::Worker;
-use crate::geometry::{Aabb, BLOCK, NO_PRIMITIVE, Packet, PrimitiveIndex, Search, Stack, Visitor};
+use crate::geometry::{BLOCK, ClosestHit, NO_PRIMITIVE, Opaque, Packet, Place, PrimitiveIndex, Search, Stack, Visitor};
 use crate::math::V3;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
@@ -24,14 +24,17 @@ use glam::Vec3;
 /// Lane mask of native width.
 type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
 
-/// Most surfaces in one place; those farthest along the ray are left out.
-const MOST: usize = 16;
-
-/// Surfaces touch up to this multiple of the distance by which rays start off a surface.
-const REACH: f32 = 1.5;
+/// Most transparent surfaces in one place; those farthest along the ray are left out.
+const MOST: usize = 32;
 
 /// Distances are known to this share of the coordinates that went into them.
 const ROUNDING: f32 = 1.0 / (1 << 21) as f32;
+
+/// Rays flatter than this are taken to be this steep.
+const FLATTEST: f32 = 1.0 / 4096.0;
+
+/// Most interfaces between equal media that a ray passes in a row without a level of its path.
+const MOST_JOINTS: usize = 64;
 
 /// A place in an arena of [`Contacts`].
 pub type Link = u32;
@@ -100,9 +103,12 @@ impl Contacts {
         self.get(link).map_or(NO_CONTACT, |entry| entry.next)
     }
 
-    /// How far along the ray the last surface in the place of a hit lies behind the first.
-    pub fn extent(&self, link: Link) -> f32 {
-        self.get(link).map_or(0.0, |entry| entry.extent)
+    /// How far apart the first and the last surface of a place are, across surfaces whose normals towards the ray are
+    /// `facing`.
+    #[inline(never)]
+    pub fn depth<S: Simd>(&self, simd: S, links: S::u32s, direction: V3<S::f32s>, facing: V3<S::f32s>) -> S::f32s {
+        let along = S::f32s::from_fn(simd, |lane| self.get(links.as_slice()[lane]).map_or(0.0, |entry| entry.extent));
+        along * -direction.dot(facing)
     }
 
     /// The other faces of the interface that was hit.
@@ -153,7 +159,7 @@ impl Contacts {
     #[inline(never)]
     pub fn tint<S: Simd>(&self, simd: S, frame: &Frame<'_>, links: S::u32s, place: [V3<S::f32s>; 2]) -> V3<S::f32s> {
         let mut tint = V3::splat(simd, Vec3::ONE);
-        for number in 0..MOST {
+        for number in 0..=MOST {
             let faces = S::u32s::from_fn(simd, |lane| {
                 self.faces(links.as_slice()[lane]).get(number).map_or(NO_PRIMITIVE, |face| face.primitive)
             });
@@ -177,7 +183,7 @@ pub(super) fn links<S: Simd>(simd: S, frame: &Frame<'_>, rays: &RayQueue, at: us
 }
 
 /// Replaces hits in `worker.rays` by what is met first in their place, and links the rest to them.
-pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) {
+pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &mut Worker) {
     // Neighbours hit the same primitive, and most touch nothing.
     let mut untouched = NO_PRIMITIVE;
     for at in (0..worker.rays.len()).step_by(S::f32s::LEN) {
@@ -190,29 +196,39 @@ pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, worker: &mut Worker) 
             continue;
         }
         for at in at..worker.rays.len().min(at + S::f32s::LEN) {
-            let primitive = worker.rays.primitive[at];
             if let Some(entry) = worker.contacts.get(worker.rays.contact[at]) {
                 (worker.rays.primitive[at], worker.rays.t[at]) = (entry.primitive, 0.0);
-            } else if primitive != untouched && primitive != NO_PRIMITIVE {
-                let places = frame.tables.contacts.places_of(primitive);
+                continue;
+            }
+            for _ in 0..MOST_JOINTS {
+                let primitive = worker.rays.primitive[at];
+                if primitive == untouched || primitive == NO_PRIMITIVE {
+                    break;
+                }
+                let places = frame.scene.contacts.places_of(primitive);
                 if places.is_empty() {
                     untouched = primitive;
-                } else if lies_in(places, &worker.rays, at) {
-                    simd.vectorize(
-                        #[inline(always)]
-                        || resolve_ray(simd, frame, at, worker),
-                    );
+                    break;
+                }
+                let Some(tolerance) = tolerance_at(places, &worker.rays, at) else { break };
+                let goes_on = simd.vectorize(
+                    #[inline(always)]
+                    || resolve_ray(simd, frame, level, at, tolerance, worker),
+                );
+                if !goes_on {
+                    break;
                 }
             }
         }
     }
 }
 
-/// Whether a ray's hit lies in one of some places.
-fn lies_in(places: &[Aabb], rays: &RayQueue, at: usize) -> bool {
+/// How far apart surfaces may be in the place of a ray's hit, if it is one where they touch.
+fn tolerance_at(places: &[Place], rays: &RayQueue, at: usize) -> Option<f32> {
     let (origin, t) = (rays.origin_of(at), rays.t[at]);
     let (point, rounding) = (origin + rays.direction.get(at) * t, (origin.abs().max_element() + t) * ROUNDING);
-    places.iter().any(|place| place.padded(rounding).holds(point))
+    let around = places.iter().filter(|place| place.bounds.padded(rounding).holds(point));
+    around.map(|place| place.tolerance + rounding).reduce(f32::max)
 }
 
 /// A surface in the place of a hit.
@@ -224,30 +240,52 @@ struct Crossing {
     leaves: bool,
 }
 
-fn resolve_ray<S: Simd>(simd: S, frame: &Frame<'_>, at: usize, worker: &mut Worker) {
-    let Worker { rays, stack, contacts, .. } = worker;
-    let (first, t) = (rays.primitive[at], rays.t[at]);
+/// Decides what a ray meets where surfaces touch. Tells whether it went on to another hit.
+fn resolve_ray<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    level: u32,
+    at: usize,
+    tolerance: f32,
+    worker: &mut Worker,
+) -> bool {
+    let Worker { rays, stack, contacts, media, .. } = worker;
     let ray = [rays.origin_of(at), rays.direction.get(at)];
-    let mut found = [Crossing::default(); MOST];
-    let count = collect(simd, frame, ray, (t, first), stack, &mut found);
+    let mut found = [Crossing::default(); MOST + 1];
+    let count = collect(simd, frame, ray, rays.t[at], tolerance, stack, &mut found);
     let found = &found[..count];
     if count < 2 {
-        return;
+        return false;
     }
     let opaque = frame.tables.opaque(&frame.scene.geometry);
     let is_body = |crossing: &Crossing| frame.scene.objects[crossing.object as usize].body;
-    let mut met = [NO_PRIMITIVE; MOST + 1];
-    let mut thin = 0;
     let passes = |crossing: &&Crossing| !opaque.contains(crossing.primitive);
+    let mut met = [NO_PRIMITIVE; MOST + 2];
+    let mut thin = 0;
     for crossing in found.iter().filter(passes).filter(|crossing| !is_body(crossing)) {
         met[thin] = crossing.primitive;
         thin += 1;
     }
-    let mut faces = [Face { primitive: NO_PRIMITIVE, leaves: false }; MOST];
+    let mut faces = [Face { primitive: NO_PRIMITIVE, leaves: false }; MOST + 1];
     let mut others = 0;
     let mut last = found.iter().find(|crossing| !passes(crossing));
     if last.is_none() {
-        let mut bodies = found.iter().filter(passes).filter(|crossing| is_body(crossing));
+        let bodies = || found.iter().filter(passes).filter(|crossing| is_body(crossing));
+        if thin == 0 && frame.plan.refractions && bodies().all(|crossing| is_clear(frame, crossing)) {
+            let list = bodies().fold(rays.media[at], |list, crossing| match crossing.leaves {
+                true => media.leave(list, crossing.object),
+                false => media.enter(list, crossing.object),
+            });
+            let matter = |list| media.current(list).map_or((1.0, Vec3::ZERO), |body| matter(frame, body));
+            if matter(list) == matter(rays.media[at]) {
+                // The same glass goes on: nothing is there to be seen.
+                let far = if level == 1 { frame.camera.far } else { f32::INFINITY };
+                rays.media[at] = list;
+                (rays.primitive[at], rays.t[at]) = next_hit(simd, frame, ray, found[count - 1].t, far, stack);
+                return true;
+            }
+        }
+        let mut bodies = bodies();
         last = bodies.next();
         for crossing in bodies {
             faces[others] = Face { primitive: crossing.primitive, leaves: crossing.leaves };
@@ -258,61 +296,104 @@ fn resolve_ray<S: Simd>(simd: S, frame: &Frame<'_>, at: usize, worker: &mut Work
     if let Some(last) = last {
         met[thin] = last.primitive;
     }
-    let hit = found.iter().find(|crossing| crossing.primitive == met[0]);
-    rays.t[at] = hit.map_or(t, |crossing| crossing.t);
-    rays.primitive[at] = met[0];
+    if let Some(hit) = found.iter().find(|crossing| crossing.primitive == met[0]) {
+        (rays.t[at], rays.primitive[at]) = (hit.t, hit.primitive);
+    }
     if total > 1 || others > 0 {
         let extent = found[count - 1].t - found[0].t;
         rays.contact[at] = contacts.push(&met[..total], &faces[..others], extent);
     }
+    false
 }
 
-/// Collects what lies in the place of a hit, by (t, primitive); returns how much.
+/// Whether nothing of a face is seen where the media on both sides are the same.
+fn is_clear(frame: &Frame<'_>, crossing: &Crossing) -> bool {
+    let geometry = &frame.scene.geometry;
+    let material = &frame.tables.materials[frame.tables.material_of(geometry, crossing.primitive) as usize];
+    let is = |row: Row, value: f32| material.rows[row as usize..][..3] == [value; 3];
+    let untouched = !(material.shiny || material.emissive || material.textured || frame.plan.vertex_colors);
+    untouched && is(Row::Transparency, 1.0) && is(Row::Color, 1.0) && is(Row::Reflectivity, 0.0)
+}
+
+/// Index of refraction and absorption of a body.
+fn matter(frame: &Frame<'_>, body: u32) -> (f32, Vec3) {
+    let material = &frame.scene.materials[frame.scene.objects[body as usize].material as usize];
+    (material.ior, material.absorption)
+}
+
+/// What a ray hits beyond `t`, and how far away.
+fn next_hit<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    [origin, direction]: [Vec3; 2],
+    t: f32,
+    far: f32,
+    stack: &mut Stack,
+) -> (PrimitiveIndex, f32) {
+    let geometry = &frame.scene.geometry;
+    let packet = Packet::new(geometry, V3::splat(simd, origin), V3::splat(simd, direction));
+    let mut visitor = ClosestHit::new(simd, S::f32s::splat(simd, t), S::f32s::splat(simd, far));
+    Search::new(geometry, frame.plan.tree).traverse(simd, &packet, stack, &mut visitor);
+    let primitive = visitor.primitive[0];
+    (primitive, if primitive == NO_PRIMITIVE { f32::INFINITY } else { visitor.t[0] })
+}
+
+/// Collects what lies in the place of a hit at distance `t`, by (t, primitive); returns how much.
 ///
 /// A ray through an edge between two faces of an object crosses both: the second does not count.
 fn collect<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     [origin, direction]: [Vec3; 2],
-    (t, primitive): (f32, PrimitiveIndex),
+    t: f32,
+    tolerance: f32,
     stack: &mut Stack,
-    found: &mut [Crossing; MOST],
+    found: &mut [Crossing; MOST + 1],
 ) -> usize {
     let (origin, direction) = (V3::splat(simd, origin), V3::splat(simd, direction));
     let packet = Packet::new(&frame.scene.geometry, origin, direction);
     let search = Search::new(&frame.scene.geometry, frame.plan.tree);
-    let mut one = [NO_PRIMITIVE; MOST_LANES];
-    one[0] = primitive;
-    let (gap, _) = gap_and_sides(simd, frame, &one[..S::f32s::LEN], origin, direction, S::f32s::splat(simd, t));
-    let gap = gap[0];
-    let after = f32::from_bits(t.to_bits() - 1);
-    let mut window = Window { simd, after, limit: t + gap, hits: [(0.0, 0); MOST], len: 0 };
-    loop {
-        let before = window.limit;
-        window.len = 0;
-        search.traverse(simd, &packet, stack, &mut window);
-        let last = window.hits[..window.len].last().map_or(t, |hit| hit.0);
-        window.limit = last + gap;
-        // What touches the last one belongs to the place, too.
-        if window.limit <= before || window.len == MOST {
-            break;
-        }
+    let mut window = Window {
+        simd,
+        after: t - tolerance / FLATTEST,
+        limit: t + tolerance / FLATTEST,
+        opaque: frame.tables.opaque(&frame.scene.geometry),
+        first_opaque: None,
+        hits: [(0.0, 0); MOST],
+        len: 0,
+    };
+    window.after = window.after.max(0.0);
+    search.traverse(simd, &packet, stack, &mut window);
+    let mut hits = [(0.0, 0); MOST + 1];
+    let mut len = window.len;
+    hits[..len].copy_from_slice(&window.hits[..len]);
+    if let Some(opaque) = window.first_opaque {
+        let at = hits[..len].partition_point(|hit| *hit < opaque);
+        len += 1;
+        hits[at..len].rotate_right(1);
+        hits[at] = opaque;
     }
     let mut count = 0;
-    for first in (0..window.len).step_by(S::f32s::LEN) {
-        let hits = &window.hits[first..window.len.min(first + S::f32s::LEN)];
+    for first in (0..len).step_by(S::f32s::LEN) {
+        let hits = &hits[first..len.min(first + S::f32s::LEN)];
         let mut primitives = [NO_PRIMITIVE; MOST_LANES];
         let mut distances = [0.0; MOST_LANES];
         for (lane, &(t, primitive)) in hits.iter().enumerate() {
             (distances[lane], primitives[lane]) = (t, primitive);
         }
-        let t = S::f32s::from_slice(simd, &distances[..S::f32s::LEN]);
-        let (_, leaving) = gap_and_sides(simd, frame, &primitives[..S::f32s::LEN], origin, direction, t);
-        for (lane, &(t, primitive)) in hits.iter().enumerate() {
+        let cosines = cosines(simd, frame, &primitives[..S::f32s::LEN], origin, direction, &distances[..S::f32s::LEN]);
+        for (lane, &(other, primitive)) in hits.iter().enumerate() {
+            let cosine = cosines[lane];
+            let gap = (other - t).abs() * cosine.abs().max(FLATTEST);
+            let is_elsewhere = gap > tolerance || frame.scene.contacts.places_of(primitive).is_empty();
+            if is_elsewhere && other > t {
+                // What lies behind it cannot be met at once.
+                return count;
+            }
             let object = frame.scene.geometry.object_of(primitive);
-            let crossing = Crossing { t, primitive, object, leaves: leaving >> lane & 1 == 1 };
-            let is_known = |other: &Crossing| other.object == object && other.leaves == crossing.leaves;
-            if !found[..count].iter().any(is_known) {
+            let crossing = Crossing { t: other, primitive, object, leaves: cosine > 0.0 };
+            let is_known = |known: &Crossing| known.object == object && known.leaves == crossing.leaves;
+            if !is_elsewhere && !found[..count].iter().any(is_known) {
                 found[count] = crossing;
                 count += 1;
             }
@@ -321,26 +402,26 @@ fn collect<S: Simd>(
     count
 }
 
-/// How far along the ray from each hit others are in the same place, and the lanes whose surfaces are seen from behind.
-fn gap_and_sides<S: Simd>(
+/// The cosines between a ray and the normals of what it hits.
+fn cosines<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     primitives: &[PrimitiveIndex],
     origin: V3<S::f32s>,
     direction: V3<S::f32s>,
-    t: S::f32s,
-) -> (S::f32s, u64) {
+    t: &[f32],
+) -> S::f32s {
     let hits = Hits::new(simd, primitives);
-    let point = surfaces(simd, frame, &hits, origin, direction, t).point;
-    let cosine = point.normal.dot(direction);
-    let rounding = (origin.x.abs().max(origin.y.abs()).max(origin.z.abs()) + t) * ROUNDING;
-    let gap = (leave::margin::<S>(point.scale) * REACH + rounding) / cosine.abs().max(FLATTEST);
-    (gap, cosine.simd_gt(S::f32s::splat(simd, 0.0)).to_bitmask())
+    let t = S::f32s::from_slice(simd, t);
+    surfaces(simd, frame, &hits, origin, direction, t).point.normal.dot(direction)
 }
 
-/// Collects the hits of one ray, which all lanes hold, within an interval; the nearest, by (t, primitive).
-struct Window<S> {
+/// Collects the hits of one ray, which all lanes hold, within an interval: the nearest transparent ones by (t, primitive), and
+/// the first opaque one.
+struct Window<'a, S> {
     simd: S,
+    opaque: Opaque<'a>,
+    first_opaque: Option<(f32, PrimitiveIndex)>,
     /// Exclusive.
     after: f32,
     /// Inclusive.
@@ -349,8 +430,13 @@ struct Window<S> {
     len: usize,
 }
 
-impl<S> Window<S> {
+impl<S> Window<'_, S> {
     fn add(&mut self, t: f32, primitive: PrimitiveIndex) {
+        if self.opaque.contains(primitive) {
+            let is_first = self.first_opaque.is_none_or(|first| (t, primitive) < first);
+            self.first_opaque = if is_first { Some((t, primitive)) } else { self.first_opaque };
+            return;
+        }
         let hits = &self.hits[..self.len];
         if hits.iter().any(|hit| hit.1 == primitive) {
             return;
@@ -365,7 +451,7 @@ impl<S> Window<S> {
     }
 }
 
-impl<S: Simd> Visitor<S> for Window<S> {
+impl<S: Simd> Visitor<S> for Window<'_, S> {
     #[inline(always)]
     fn passes_backs(&self) -> bool {
         true

@@ -96,7 +96,7 @@ impl Plan {
             reflections,
             flat_mirrors: secondary_beams && reflections && tables.flat_mirrors,
             refractions,
-            contacts: !tables.contacts.is_empty(),
+            contacts: !scene.contacts.is_empty(),
             media: !tables.transparent_bodies.is_empty(),
             absorption: tables.transparent_bodies.iter().any(|&object| absorbs(object)),
             textures: tables.materials.iter().any(|m| m.textured),

@@ -268,7 +268,8 @@ impl RayQueue {
     pub fn clear_padding(&mut self) {
         let beyond = self.len..self.len + MOST_LANES;
         self.primitive[beyond.clone()].fill(NO_PRIMITIVE);
-        self.t[beyond].fill(0.0);
+        self.t[beyond.clone()].fill(0.0);
+        self.contact[beyond].fill(0);
     }
 }
 

@@ -120,13 +120,15 @@ pub(super) fn follow<S: Simd>(
 
     if frame.plan.reflections {
         let mut weight = incident.weight * split.reflected;
+        let mut margin = incident.margin;
         if let Some(links) = incident.contact {
+            margin += contacts.depth(simd, links, incident.direction, incident.facing);
             weight = weight * contacts.filter(simd, frame, links, [incident.position, incident.direction]);
         }
         let heavy = incident.spawning & heavy(simd, weight, frame.settings.min_weight);
         if heavy.any_true() {
             let direction = hold_unit::<S>(incident.direction + incident.normal.scale(cosine * 2.0));
-            let start = leave::start::<S>(incident.position, incident.facing, incident.margin, direction);
+            let start = leave::start::<S>(incident.position, incident.facing, margin, direction);
             let contact = frame.plan.contacts.then(|| S::u32s::splat(simd, NO_CONTACT));
             let lineage = incident.lineage(incident.media, contact, incident.flat);
             mirrored.push_lanes::<S>(heavy, start, direction, weight, &lineage);
@@ -139,8 +141,7 @@ pub(super) fn follow<S: Simd>(
         if let Some(links) = incident.contact {
             weight = weight * contacts.tint(simd, frame, links, [incident.position, incident.direction]);
             // Off the last surface of the place, not the first.
-            let towards = -incident.direction.dot(incident.facing);
-            margin += S::f32s::from_fn(simd, |lane| contacts.extent(links.as_slice()[lane])) * towards;
+            margin += contacts.depth(simd, links, incident.direction, incident.facing);
         }
         let heavy = incident.spawning & heavy(simd, weight, frame.settings.min_weight);
         if heavy.any_true() {

@@ -252,15 +252,16 @@ fn shade_surfaces<S: Simd>(
     colors.deposit(simd, level == 1, samples, present::<S>(rays, at), own);
 
     // Light that falls on the surface comes through what lies before it in the same place.
-    let lit_weight = match contact::links(simd, frame, rays, at) {
-        Some(links) => covered * contacts.filter(simd, frame, links, [incoming.origin, direction]),
-        None => covered,
-    };
+    let (mut lit_weight, mut lit_margin) = (covered, leave::margin::<S>(surfaces.point.scale));
+    if let Some(links) = contact::links(simd, frame, rays, at) {
+        lit_weight = covered * contacts.filter(simd, frame, links, [incoming.origin, direction]);
+        lit_margin += contacts.depth(simd, links, direction, view.facing);
+    }
     let lit = Lit::<S> {
         active,
         position: surfaces.point.position,
         facing: view.facing,
-        margin: leave::margin::<S>(surfaces.point.scale),
+        margin: lit_margin,
         normal: view.normal,
         to_viewer: -direction,
         weight: lit_weight,

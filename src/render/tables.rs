@@ -1,8 +1,6 @@
 //! What shading reads of a scene, flattened for gathering into lanes. Made once a scene.
 
-use crate::geometry::{
-    Contacts, Geometry, Home, Opaque, OpaqueList, PrimitiveIndex, SharedMesh, VertexAttributes, VertexExtras,
-};
+use crate::geometry::{Geometry, Home, Opaque, OpaqueList, PrimitiveIndex, SharedMesh, VertexAttributes, VertexExtras};
 use crate::scene::material::{Lookup, Model, Relief, Scaled};
 use crate::scene::{Material, Scene, Texture};
 use glam::{Vec3, Vec4};
@@ -223,8 +221,6 @@ pub struct Tables {
     pub vertex_colors: bool,
     /// What blocks all light; `None` where everything does.
     pub opaque: Option<OpaqueList>,
-    /// What touches something transparent.
-    pub contacts: Contacts,
     /// Objects that bound a transparent body.
     pub transparent_bodies: Vec<u32>,
     /// Whether anything flat mirrors.
@@ -240,12 +236,6 @@ impl Tables {
         let transparent = scene.objects.iter().any(|o| scene.materials[o.material as usize].is_transparent());
         let opaque =
             transparent.then(|| OpaqueList::new(&scene.geometry, |object| !material_of(object).is_transparent()));
-        let is_transparent = |object: u32| material_of(object).is_transparent();
-        let contacts = if transparent {
-            Contacts::new(&scene.geometry, scene.objects.len() as u32, is_transparent)
-        } else {
-            Contacts::default()
-        };
         let transparent_bodies = (0..scene.objects.len() as u32)
             .filter(|&o| scene.objects[o as usize].body && material_of(o).is_transparent())
             .collect();
@@ -269,7 +259,6 @@ impl Tables {
             extras_of: places(own().len(), &scene.geometry.extras),
             materials,
             opaque,
-            contacts,
             transparent_bodies,
             flat_mirrors,
             unlit_gain: 1.0,

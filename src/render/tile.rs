@@ -251,7 +251,7 @@ impl Worker {
     fn shade_level<S: Simd>(&mut self, simd: S, frame: &Frame<'_>, level: u32) {
         let mut last = Instant::now();
         if frame.plan.contacts {
-            contact::resolve(simd, frame, self);
+            contact::resolve(simd, frame, level, self);
         }
         shade::begin(simd, frame, self);
         let rays = self.rays.len();

@@ -242,8 +242,12 @@ impl<T> Material<T> {
         let without = |map: &mut Option<Scaled<T>>| drop(map.take_if(|map| lost(&map.lookup)));
         let Relief { normal, bump, parallax } = &mut self.relief;
         [normal, bump, parallax, &mut self.occlusion].into_iter().for_each(without);
-        for map in [&mut self.metallic_roughness, &mut self.transmission] {
-            map.take_if(|lookup| lost(lookup));
+        self.transmission.take_if(|lookup| lost(lookup));
+        if self.metallic_roughness.take_if(|lookup| lost(lookup)).is_some()
+            && let Model::MetallicRoughness { metallic, .. } = &mut self.model
+        {
+            // Factors are 1 beside a map, and what is all metal shows nothing of its own.
+            *metallic = 0.0;
         }
         if self.emission.texture.take_if(|lookup| lost(lookup)).is_some() {
             self.emission.factor = Vec3::ZERO;

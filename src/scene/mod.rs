@@ -37,7 +37,7 @@ pub use path::CameraPath;
 pub use progress::Progress;
 pub use texture::Texture;
 
-use crate::geometry::{Aabb, Geometry};
+use crate::geometry::{Aabb, Contacts, Geometry};
 use crate::settings::{Exposure, Settings, ToneMap};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
@@ -98,6 +98,8 @@ pub struct Scene {
     pub build_ms: f64,
     /// Shapes and the tree over them. Shared, as are the objects, by scenes that differ in their lights alone.
     pub geometry: Arc<Geometry>,
+    /// Where something touches a transparent surface.
+    pub contacts: Arc<Contacts>,
     /// The place of the file that is at the origin of the scene; what is far from its own origin is moved in double precision
     /// when it is built. 0 in all other scenes.
     pub origin: DVec3,
@@ -134,6 +136,7 @@ impl Scene {
             name: self.name.clone(),
             generation: next_generation(),
             geometry: Arc::clone(&self.geometry),
+            contacts: Arc::clone(&self.contacts),
             objects: Arc::clone(&self.objects),
             materials: self.materials.clone(),
             textures: self.textures.clone(),

@@ -77,7 +77,7 @@ const SUNK: &[Place] = &[
     }),
 ];
 
-/// Whose picture is that of one body, by how far they are moved; paths that pass the joints are longer.
+/// Whose picture is that of one body, by how far they are moved.
 const JOINED: &[Place] = &[
     ("two boxes", |e| {
         let left = cuboid([-1.0, 0.1, -1.0], [-e, 1.0, 1.0], "glass");
@@ -145,15 +145,14 @@ fn the_order_in_the_file_does_not_matter() {
 
 #[test]
 fn boxes_that_touch_are_one_body() {
-    let longer = |objects: &[Value]| {
+    let picture = |objects: &[Value]| {
         let scene = scene(objects, 1.0);
-        let settings = Settings { depth: Some(24), ..Settings::exact() };
-        render(&scene, &scene.cameras[0].camera, &settings, SIZE)
+        render(&scene, &scene.cameras[0].camera, &Settings::exact(), SIZE)
     };
-    let one = longer(&[cuboid([-1.0, 0.1, -1.0], [1.0, 1.0, 1.0], "glass"), floor("floor")]);
+    let one = picture(&[cuboid([-1.0, 0.1, -1.0], [1.0, 1.0, 1.0], "glass"), floor("floor")]);
     for (name, place) in JOINED {
-        let several = longer(&place(0.0));
-        let off = different(&one, &several, 0.05);
+        let several = picture(&place(0.0));
+        let off = different(&one, &several, 1e-3);
         // Rays that meet edges.
         assert!(off <= 20, "{name}: {off} pixels differ");
     }
@@ -213,6 +212,71 @@ fn an_edge_between_two_triangles_is_crossed_once() {
     for (x, y) in (0..33).flat_map(|y| (0..33).map(move |x| (x, y))) {
         let [red, ..] = film.color(x, y);
         assert!((0.4..0.6).contains(&red), "({x}, {y}) is {red}");
+    }
+}
+
+/// A floor that is large beside what stands on it is coarser than that, and things a little above it lie in the same place
+/// for rays that leave it.
+#[test]
+fn large_floors_are_seen_under_small_panes() {
+    let picture = |half: f64, height: f64, floor_first: bool, eye: [f64; 3]| {
+        let pane = json!({ "type": "rectangle", "corner": [-1, height, -1], "edge_u": [0, 0, 2], "edge_v": [2, 0, 0], "material": "pane" });
+        let floor = json!({ "type": "rectangle", "corner": [-half, 0, -half], "edge_u": [0, 0, 2.0 * half], "edge_v": [2.0 * half, 0, 0], "material": "white" });
+        let objects = if floor_first { [floor, pane] } else { [pane, floor] };
+        let text = json!({
+            "version": 1,
+            "render": { "background": [0, 0, 1], "ambient": 0 },
+            "camera": { "position": eye, "look_at": [0, 0, 0], "up": [0, 0, -1], "fov": 25 },
+            "materials": { "pane": { "transparency": 0.5, "color": 1, "specular": 0, "ambient": 0, "diffuse": 0 },
+                           "white": { "color": 1, "specular": 0, "ambient": 0 } },
+            "lights": [{ "type": "directional", "direction": [0, -1, 0] }],
+            "objects": objects,
+        });
+        let scene = load_text(text.to_string()).unwrap();
+        let settings = [Settings::exact(), Settings::balanced()];
+        settings.map(|settings| render(&scene, &scene.cameras[0].camera, &settings, (48, 48)))
+    };
+    for half in [2.0, 300.0, 1000.0, 3000.0] {
+        for floor_first in [true, false] {
+            for (height, eye) in [
+                (0.0, [0.0, 3.0, 0.0]),
+                (1e-6, [0.0, 3.0, 0.0]),
+                (1e-5, [0.0, 3.0, 0.0]),
+                (1e-4, [0.0, 3.0, 0.0]),
+                (1e-2, [0.0, 3.0, 0.0]),
+                (0.0, [0.0, 0.5, 2.5]),
+            ] {
+                if half < 10.0 && eye[1] < 1.0 {
+                    continue;
+                }
+                for film in picture(half, height, floor_first, eye) {
+                    for (x, y) in (12..36).flat_map(|y| (12..36).map(move |x| (x, y))) {
+                        let [red, _, blue] = film.color(x, y);
+                        let shows_floor = (red - blue).abs() < 1e-4;
+                        let is_filtered_twice = eye[1] < 1.0 || (red - 0.25).abs() < 1e-3;
+                        assert!(
+                            shows_floor && is_filtered_twice,
+                            "±{half}, {height} above, floor first {floor_first}: ({x}, {y}) is {red}, {blue}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn many_panes_in_one_place_hide_no_floor() {
+    let panes = std::iter::repeat_n(rectangle(0.0, "pane"), 40);
+    for objects in [
+        panes.clone().chain([floor("floor")]).collect::<Vec<_>>(),
+        std::iter::once(floor("floor")).chain(panes).collect(),
+    ] {
+        let scene = scene(&objects, 1.0);
+        let settings = Settings { depth: Some(60), ..Settings::exact() };
+        let film = render(&scene, &scene.cameras[0].camera, &settings, SIZE);
+        let [red, green, blue] = film.color(SIZE.0 / 2, SIZE.1 / 2 + 4);
+        assert!(blue < 0.5 && (red - blue).abs() < 0.6 && green < 0.6, "{red} {green} {blue}");
     }
 }
 

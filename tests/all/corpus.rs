@@ -48,7 +48,10 @@ fn seen(scene: &Scene) -> usize {
 /// Whether an error is that of a kind of file that cannot be shown at all, or of one that leaves nothing to show.
 fn is_expected(error: &SceneError) -> bool {
     let text = error.to_string();
-    text.contains("draco") || text.contains("glTF version 2.1") || text.contains("box-incomplete-positions.obj")
+    text.contains("draco")
+        || text.contains("meshopt")
+        || text.contains("glTF version 2.1")
+        || text.contains("box-incomplete-positions.obj")
 }
 
 fn draw_all(folder: &str) {

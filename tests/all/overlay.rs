@@ -31,6 +31,7 @@ fn scene() -> Scene {
         format: "JSON",
         generation: 1,
         geometry: Arc::new(Geometry::build(Vec::new())),
+        contacts: Arc::default(),
         build_ms: 0.0,
         origin: glam::DVec3::ZERO,
         objects: Vec::new().into(),

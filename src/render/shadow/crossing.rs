@@ -37,6 +37,8 @@ pub(super) fn transmittance<S: Simd>(
             let zero = S::f32s::splat(simd, 0.0);
             let mut arriving: V3<S::f32s> = V3::all(S::f32s::splat(simd, 1.0));
             let (mut last_t, mut last_primitive) = (zero, S::u32s::splat(simd, NO_PRIMITIVE));
+            // Where several things touch, what shares an edge may not come one after the other.
+            let mut recent = [Crossings { primitives: last_primitive, t: last_t }; RECENT];
             // As for opaque occluders, the interval's end is exclusive.
             let open = limit.simd_gt(zero);
             let mut limit = open.select(S::f32s::from_bits(limit.to_bits() - 1), zero - 1.0);
@@ -49,9 +51,13 @@ pub(super) fn transmittance<S: Simd>(
                 }
                 let primitives = next.closest.primitive;
                 let crossed = gather::transmission(simd, frame, &primitives, [origin, direction], next.closest.t);
-                let last = Crossings { primitives: last_primitive, t: last_t };
                 let this = Crossings { primitives, t: next.closest.t };
-                let counts = found & !last.share_an_edge_with(simd, frame, &this, [origin, direction]);
+                let mut counts = found;
+                for last in &recent {
+                    counts &= !last.share_an_edge_with(simd, frame, &this, [origin, direction]);
+                }
+                recent.rotate_right(1);
+                recent[0] = this;
                 arriving = V3::select(counts, arriving * crossed, arriving);
                 let dark = arriving.x.simd_eq(zero) & arriving.y.simd_eq(zero) & arriving.z.simd_eq(zero);
                 limit = (found & !dark).select(limit, zero - 1.0);
@@ -62,7 +68,11 @@ pub(super) fn transmittance<S: Simd>(
     )
 }
 
+/// Crossings that are remembered.
+const RECENT: usize = 4;
+
 /// A crossing of each lane.
+#[derive(Clone, Copy)]
 struct Crossings<S: Simd> {
     /// What is crossed, or [`NO_PRIMITIVE`].
     primitives: S::u32s,

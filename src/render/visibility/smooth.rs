@@ -150,7 +150,10 @@ impl Smooth {
                 let is_certain = worker.certain_cells >> cell & 1 == 1;
                 if let Some(primitive) = common_primitive(area, is_certain, &worker.rays.primitive) {
                     let material = &tables.materials[tables.material_of(&frame.scene.geometry, primitive) as usize];
-                    if material.is_uneven() || tables.extras(&frame.scene.geometry, primitive, |_| ()).is_some() {
+                    // Where it touches something, something else may be seen.
+                    let touches = frame.plan.contacts && !frame.scene.contacts.places_of(primitive).is_empty();
+                    let carries = tables.extras(&frame.scene.geometry, primitive, |_| ()).is_some();
+                    if material.is_uneven() || carries || touches {
                         continue;
                     }
                     let paints = paints(material);

@@ -193,6 +193,7 @@ impl ImageStore {
                 is_bare = true;
                 (key, Encoded::File(self.files.read(&path)?), None)
             }
+            ImageSource::Lost(_) => return Err(FileError::Outside),
             ImageSource::Embedded { bytes, .. } => {
                 let key = Key::Embedded(bytes.as_ptr() as usize, encoding);
                 if self.is_known(&key, waiting) {
@@ -268,7 +269,10 @@ impl ImageStore {
         let (ImageSource::File(name)
         | ImageSource::Masked { name, .. }
         | ImageSource::Opacity(name)
-        | ImageSource::Embedded { name, .. }) = &image.source;
+        | ImageSource::Embedded { name, .. }) = &image.source
+        else {
+            return Ok(None);
+        };
         let shown = shortened(&name.name);
         let (problem, kind) = match key {
             Err(_) => (format!("cannot read image \"{shown}\": {error}"), "missing"),

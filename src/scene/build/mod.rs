@@ -34,7 +34,7 @@ use super::limits::{Limits, exceeded};
 use super::material::{Alpha, Encoding, Model};
 use super::texture::ImageTexture;
 use super::{Light, Material, NamedCamera, Object, Progress, RenderDefaults, Scene, Texture, next_generation};
-use crate::geometry::{Aabb, Geometry, Part};
+use crate::geometry::{Aabb, Contacts, Geometry, Part};
 use crate::settings::Exposure;
 use allowance::Allowance;
 use glam::{DAffine3, DVec3, Vec3};
@@ -214,6 +214,7 @@ impl SceneBuilder {
         self.lights.clear();
         self.sharing.start_over();
         self.models.start_over();
+        self.placeholders.start_over(textures as u32);
         self.holes = HoleMaps::default();
     }
 
@@ -331,6 +332,10 @@ impl SceneBuilder {
         let (parts, instances) = (std::mem::take(&mut self.parts), std::mem::take(&mut self.sharing).finish());
         let mut geometry = Geometry::build_while(parts, instances, &|| !self.progress.is_cancelled())?;
         geometry.hole_maps = std::mem::take(&mut self.holes.maps);
+        let is_transparent =
+            |object: u32| self.materials[self.objects[object as usize].material as usize].is_transparent();
+        let is_wanted = || !self.progress.is_cancelled();
+        let contacts = Contacts::new(&geometry, self.objects.len() as u32, is_transparent, &is_wanted)?;
         let build_ms = start.elapsed().as_secs_f64() * 1e3;
         self.progress.begin("looking around", 0);
         let progress = self.progress.clone();
@@ -346,6 +351,7 @@ impl SceneBuilder {
             format: self.format,
             generation: next_generation(),
             geometry: Arc::new(geometry),
+            contacts: Arc::new(contacts),
             build_ms,
             objects: self.objects.into(),
             origin: self.origin,

@@ -31,6 +31,13 @@ impl Placeholders {
         Texture::Checker { colors: GREYS, size: EDGE as f32 }
     }
 
+    /// Forgets what was measured, and all but the first so many textures.
+    pub fn start_over(&mut self, textures: u32) {
+        self.areas.retain(|texture, _| *texture < textures);
+        self.areas.values_mut().for_each(|areas| *areas = [0.0; 2]);
+        self.measured.clear();
+    }
+
     /// Takes a mesh into account that may show one. What is placed again counts once.
     pub fn measure(&mut self, material: &Material, mesh: &Arc<MeshDesc>, placement: &Placement) {
         let Some(lookup) = material.color.texture else { return };

@@ -56,6 +56,8 @@ pub enum ImageSource {
     },
     /// In a file that holds opacity alone, likewise, of white.
     Opacity(NameRef),
+    /// Nowhere to be had, as was told.
+    Lost(NameRef),
     /// Within the scene's own file.
     Embedded {
         /// Encoded as in an image file.

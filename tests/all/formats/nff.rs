@@ -123,8 +123,7 @@ fn oddities_are_warned_of_and_drawn() {
     let expected = [
         "s.nff:2:1: Ks is 2",
         "s.nff:2:1: index of refraction 0 is taken as 1",
-        "s.nff:3:1: a radius below 0",
-        "s.nff:4:1: a radius below 0",
+        "s.nff:3:1: a radius below 0 asks for the inside only; both sides are drawn (2 times, the first here)",
         "s.nff:5:1: a normal of length 0",
         "s.nff:6:1: triangles without area: 1 left out",
     ];

@@ -310,7 +310,7 @@ fn images_are_found_by_paths_of_other_machines() {
         load(&folder.write("s.obj", format!("mtllib s.mtl\n{TRIANGLE}usemtl a\nf 1 2 3")), &LoadOptions::default())
             .unwrap();
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-    assert_eq!(scene.textures.len(), 2);
+    assert_eq!(scene.textures.len(), 3);
     assert!(picture(&scene, 16, 9).iter().any(|[red, green, blue]| *red > 100 && *green < 20 && *blue < 20));
 }
 

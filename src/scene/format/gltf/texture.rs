@@ -91,14 +91,12 @@ impl<'d> Textures<'d> {
         });
         let sampler = report.attempt(named.transpose(), "samplers left out")?.flatten().unwrap_or_default();
         let source = self.source(texture, i, report)?;
-        let name = source.map(|source| {
-            let name = NameRef { name: format!("texture {i}"), at: report.at(format!("/textures/{i}")) };
-            let kind = TextureKind::Image(ImageDesc { source, sampler, optional: true });
-            self.descs.push(TextureDesc { name: name.clone(), kind, size: 1.0 });
-            name
-        });
-        self.names.insert(i, name.clone());
-        Ok(name)
+        let name = NameRef { name: format!("texture {i}"), at: report.at(format!("/textures/{i}")) };
+        let source = source.unwrap_or_else(|| ImageSource::Lost(name.clone()));
+        let kind = TextureKind::Image(ImageDesc { source, sampler, optional: true });
+        self.descs.push(TextureDesc { name: name.clone(), kind, size: 1.0 });
+        self.names.insert(i, Some(name.clone()));
+        Ok(Some(name))
     }
 
     /// Where the image of a texture is.

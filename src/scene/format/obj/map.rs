@@ -72,7 +72,11 @@ impl Options {
                     let default = if name == b"-s" { Vec2::ONE } else { Vec2::ZERO };
                     let mut numbers = [None; 3];
                     for number in &mut numbers {
-                        let Some(value) = words.peek().filter(|word| word.parsed().is_some()) else { break };
+                        let Some(value) =
+                            words.peek().filter(|word| word.parsed().is_some() || is_no_number(word.bytes))
+                        else {
+                            break;
+                        };
                         words.next();
                         *number = value
                             .number()
@@ -91,6 +95,13 @@ impl Options {
             }
         }
     }
+}
+
+/// Whether a word is how programs write a number that is none.
+fn is_no_number(word: &[u8]) -> bool {
+    let word = word.strip_prefix(b"-").or_else(|| word.strip_prefix(b"+")).unwrap_or(word).to_ascii_lowercase();
+    let is_of = |kind: &[u8]| word.strip_prefix(kind).is_some_and(|rest| rest.is_empty() || rest.starts_with(b"("));
+    is_of(b"nan") || is_of(b"inf") || is_of(b"infinity") || word.starts_with(b"1.#")
 }
 
 /// What is told of something that is left out.
