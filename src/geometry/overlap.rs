@@ -5,7 +5,7 @@ use super::primitive::{Cone, Cutout, Disk, Plane, Sphere, Triangle, for_each_pri
 use super::{Aabb, Geometry, PrimitiveIndex, PrimitiveKind};
 
 impl Geometry {
-    /// Calls `visit` for every primitive whose bounds overlap `within`, and for few others near it; for all planes.
+    /// Calls `visit` for every primitive whose bounds overlap `within`; those of planes are infinite.
     pub(super) fn overlapping(&self, within: &Aabb, visit: &mut impl FnMut(PrimitiveIndex)) {
         match &self.bvh {
             Some(bvh) => {

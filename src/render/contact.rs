@@ -1,12 +1,12 @@
 //! Surfaces that touch the one that a ray hit: glass on a floor, a pane on a wall, two glass boxes side by side.
 //!
-//! Rays that follow from a hit start a little off its surface, beyond all that touches it. So what lies in the same place
+//! Rays that follow from a hit start a little off its surface, and so beyond what touches it. So what lies in the same place
 //! as a hit is collected before the hit is shaded, and met in one order:
 //!
 //! 1. Thin transparent surfaces, such as panes and decals, by (t, object, primitive). The ray that goes on straight
 //!    through one meets the next at once; light that falls on what lies behind is filtered by those in front.
-//! 2. An opaque surface, which ends the path. The faces of bodies in the same place are void then: the picture is
-//!    the limit of a body that is sunk into the opaque one, and does not depend on their order in the file.
+//! 2. An opaque surface, which ends the path. The faces of bodies in the same place are not
+//!    seen: the picture is the limit of a body that is sunk into the opaque one, whatever their order in the file.
 //! 3. Otherwise the faces of transparent bodies, as one interface: light bends once, from the body before the first to
 //!    the body behind the last. The picture is the limit of bodies that overlap.
 

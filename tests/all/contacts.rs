@@ -227,7 +227,7 @@ fn large_floors_are_seen_under_small_panes() {
             "version": 1,
             "render": { "background": [0, 0, 1], "ambient": 0 },
             "camera": { "position": eye, "look_at": [0, 0, 0], "up": [0, 0, -1], "fov": 25 },
-            "materials": { "pane": { "transparency": 0.5, "color": 1, "specular": 0, "ambient": 0, "diffuse": 0 },
+            "materials": { "pane": { "transparency": 0.5, "fresnel": false, "color": 1, "specular": 0, "ambient": 0, "diffuse": 0 },
                            "white": { "color": 1, "specular": 0, "ambient": 0 } },
             "lights": [{ "type": "directional", "direction": [0, -1, 0] }],
             "objects": objects,
