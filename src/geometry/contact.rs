@@ -7,9 +7,9 @@ use super::{Aabb, Geometry, PrimitiveIndex, PrimitiveKind};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// Primitives closer than this share of their largest coordinate touch: four times the distance by which rays start off a
-/// surface of that scale.
-const TOLERANCE: f64 = 1.0 / (1 << 17) as f64;
+/// Primitives closer than this share of their largest coordinate touch: a little more than the distance by which rays start
+/// off a surface of that scale.
+const TOLERANCE: f64 = 1.25 / (1 << 19) as f64;
 
 /// Sine of the angle up to which flat primitives are parallel: others meet in a strip that is thinner than a pixel.
 const PARALLEL: f64 = 1e-2;
@@ -182,6 +182,10 @@ impl Surface {
         let same_object = self.object == other.object;
         match (&self.form, &other.form) {
             (&Form::Flat { normal, point }, &Form::Flat { normal: other_normal, point: other_point }) => {
+                // Without area there is nothing to touch.
+                if normal == DVec3::ZERO || other_normal == DVec3::ZERO {
+                    return false;
+                }
                 // Neighbours in a mesh touch along their edge; only its back may lie on its front.
                 if same_object && normal.dot(other_normal) > 0.0 || normal.cross(other_normal).length() > PARALLEL {
                     return false;
@@ -284,6 +288,7 @@ mod tests {
         for (other, touches) in [
             (triangle(1.0, 0.0), true),
             (triangle(1.0 + 1e-5, 0.0), true),
+            (triangle(1.0 + 3e-5, 0.0), false),
             (triangle(1.01, 0.0), false),
             (triangle(1.0, 1.0), false),
             (Shape::Plane { point: Vec3::Y, normal: Vec3::NEG_Y }, true),

@@ -137,38 +137,48 @@ impl Contacts {
     /// What the thin surfaces that rays came through leave of light that comes the same way; 1 where there are none.
     #[inline(never)]
     pub fn filter<S: Simd>(&self, simd: S, frame: &Frame<'_>, links: S::u32s, place: [V3<S::f32s>; 2]) -> V3<S::f32s> {
-        let mut filter = V3::splat(simd, Vec3::ONE);
-        let mut links = links;
-        loop {
-            let before = S::u32s::from_fn(simd, |lane| {
-                let entry = self.get(links.as_slice()[lane]);
-                entry.map_or(NO_CONTACT, |entry| entry.before)
-            });
-            if !before.simd_ne(S::u32s::splat(simd, NO_CONTACT)).any_true() {
-                return filter;
-            }
-            let thin = S::u32s::from_fn(simd, |lane| {
-                self.get(before.as_slice()[lane]).map_or(NO_PRIMITIVE, |entry| entry.primitive)
-            });
-            filter = filter * transmission(simd, frame, &thin, place, S::f32s::splat(simd, 0.0));
-            links = before;
-        }
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut filter = V3::splat(simd, Vec3::ONE);
+                let mut links = links;
+                loop {
+                    let before = S::u32s::from_fn(simd, |lane| {
+                        let entry = self.get(links.as_slice()[lane]);
+                        entry.map_or(NO_CONTACT, |entry| entry.before)
+                    });
+                    if !before.simd_ne(S::u32s::splat(simd, NO_CONTACT)).any_true() {
+                        return filter;
+                    }
+                    let thin = S::u32s::from_fn(simd, |lane| {
+                        self.get(before.as_slice()[lane]).map_or(NO_PRIMITIVE, |entry| entry.primitive)
+                    });
+                    filter = filter * transmission(simd, frame, &thin, place, S::f32s::splat(simd, 0.0));
+                    links = before;
+                }
+            },
+        )
     }
 
     /// What the other faces of interfaces leave of the light that passes; 1 where there are none.
     #[inline(never)]
     pub fn tint<S: Simd>(&self, simd: S, frame: &Frame<'_>, links: S::u32s, place: [V3<S::f32s>; 2]) -> V3<S::f32s> {
-        let mut tint = V3::splat(simd, Vec3::ONE);
-        for number in 0..=MOST {
-            let faces = S::u32s::from_fn(simd, |lane| {
-                self.faces(links.as_slice()[lane]).get(number).map_or(NO_PRIMITIVE, |face| face.primitive)
-            });
-            if !faces.simd_ne(S::u32s::splat(simd, NO_PRIMITIVE)).any_true() {
-                break;
-            }
-            tint = tint * transmission(simd, frame, &faces, place, S::f32s::splat(simd, 0.0));
-        }
-        tint
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut tint = V3::splat(simd, Vec3::ONE);
+                for number in 0..=MOST {
+                    let faces = S::u32s::from_fn(simd, |lane| {
+                        self.faces(links.as_slice()[lane]).get(number).map_or(NO_PRIMITIVE, |face| face.primitive)
+                    });
+                    if !faces.simd_ne(S::u32s::splat(simd, NO_PRIMITIVE)).any_true() {
+                        break;
+                    }
+                    tint = tint * transmission(simd, frame, &faces, place, S::f32s::splat(simd, 0.0));
+                }
+                tint
+            },
+        )
     }
 }
 
@@ -241,6 +251,7 @@ struct Crossing {
 }
 
 /// Decides what a ray meets where surfaces touch. Tells whether it went on to another hit.
+#[inline(always)]
 fn resolve_ray<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
@@ -322,6 +333,7 @@ fn matter(frame: &Frame<'_>, body: u32) -> (f32, Vec3) {
 }
 
 /// What a ray hits beyond `t`, and how far away.
+#[inline(always)]
 fn next_hit<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
@@ -332,8 +344,10 @@ fn next_hit<S: Simd>(
 ) -> (PrimitiveIndex, f32) {
     let geometry = &frame.scene.geometry;
     let packet = Packet::new(geometry, V3::splat(simd, origin), V3::splat(simd, direction));
-    let mut visitor = ClosestHit::new(simd, S::f32s::splat(simd, t), S::f32s::splat(simd, far));
-    Search::new(geometry, frame.plan.tree).traverse(simd, &packet, stack, &mut visitor);
+    // One lane is enough.
+    let limit = S::f32s::from_fn(simd, |lane| if lane == 0 { far } else { -1.0 });
+    let mut visitor = ClosestHit::new(simd, S::f32s::splat(simd, t), limit);
+    Search::new(geometry, frame.plan.tree).traverse_alone(simd, &packet, stack, &mut visitor);
     let primitive = visitor.primitive[0];
     (primitive, if primitive == NO_PRIMITIVE { f32::INFINITY } else { visitor.t[0] })
 }
@@ -341,6 +355,7 @@ fn next_hit<S: Simd>(
 /// Collects what lies in the place of a hit at distance `t`, by (t, primitive); returns how much.
 ///
 /// A ray through an edge between two faces of an object crosses both: the second does not count.
+#[inline(always)]
 fn collect<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
@@ -363,7 +378,7 @@ fn collect<S: Simd>(
         len: 0,
     };
     window.after = window.after.max(0.0);
-    search.traverse(simd, &packet, stack, &mut window);
+    search.traverse_alone(simd, &packet, stack, &mut window);
     let mut hits = [(0.0, 0); MOST + 1];
     let mut len = window.len;
     hits[..len].copy_from_slice(&window.hits[..len]);
@@ -403,6 +418,7 @@ fn collect<S: Simd>(
 }
 
 /// The cosines between a ray and the normals of what it hits.
+#[inline(always)]
 fn cosines<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
