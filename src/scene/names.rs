@@ -32,9 +32,7 @@ fn without_scheme(name: &str) -> &str {
         Some(scheme) if scheme.eq_ignore_ascii_case("file:") => {
             let path = name[5..].trim_start_matches('/');
             // All but the slash of a rooted path.
-            if path.is_empty() {
-                path
-            } else if path.as_bytes().get(1) == Some(&b':') {
+            if path.is_empty() || path.as_bytes().get(1) == Some(&b':') {
                 path
             } else {
                 &name[name.len() - path.len() - 1..]

@@ -94,6 +94,7 @@ impl Texels {
         Some(Self { encoding: Encoding::Data, levels, texels: Store::Words(texels) })
     }
 
+    #[allow(clippy::type_complexity, reason = "two lists that are taken apart at once")]
     fn laid_out<C: Channel, P: Copy + Default>(
         width: u32,
         height: u32,

@@ -240,7 +240,7 @@ fn before_red(folder: &Folder, library: &str) -> [f32; 3] {
     let camera = Camera { eye, look_at: off_the_diagonal, ..Camera::default() };
     let mut film = Film::new(3, 3, Planes::default());
     render_frame(&scene, &camera, &Settings::exact(), &mut Scratch::default(), &mut film);
-    film.color(1, 1).into()
+    film.color(1, 1)
 }
 
 #[test]

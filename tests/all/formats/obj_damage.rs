@@ -80,7 +80,7 @@ fn odd_spellings_are_read() {
 fn vertex_colours_may_be_bytes() {
     let corner = |text: &str| {
         let scene = load_obj(text);
-        let (_, extras) = scene.geometry.extras.iter().next().expect("colours");
+        let (_, extras) = scene.geometry.extras.first().expect("colours");
         (extras.colors.map(|color| color.truncate()), warnings(&scene))
     };
     let (mut colors, told) = corner("v 0 0 0 255 0 0\nv 1 0 0 0 255 0\nv 0 1 0\nv 5 5 5 0 0 255\nf 1 2 3");

@@ -219,8 +219,7 @@ fn equal_faults_are_counted() {
     let positions = file.vectors(&CORNERS);
     let primitive = format!(r#"{{ "attributes": {{ "POSITION": {positions}, "NORMAL": 99 }} }}"#);
     let scene = file.load(&format!(
-        r#""meshes": [{{ "primitives": [{0}, {0}, {0}] }}], "nodes": [{{ "mesh": 0 }}, {{ "mesh": 0 }}]"#,
-        primitive
+        r#""meshes": [{{ "primitives": [{primitive}, {primitive}, {primitive}] }}], "nodes": [{{ "mesh": 0 }}, {{ "mesh": 0 }}]"#
     ));
     let told = [
         "/meshes/0/primitives/0/attributes/NORMAL: 3 attributes left out: first accessor 99 does not exist; expected a number from 0 to 0",

@@ -63,7 +63,7 @@ fn spot(light: &Punctual, pointer: &str, report: &mut Report) -> [f32; 2] {
     let angles = [inner.clamp(0.0, widest), widest];
     if light.spot.is_none() {
         report.warn(pointer, "a light of type spot without the entry spot; the usual angles are taken");
-    } else if angles[0] != inner || outer > FRAC_PI_2 + 1e-3 || outer < 0.0 {
+    } else if angles[0] != inner || !(0.0..=FRAC_PI_2 + 1e-3).contains(&outer) {
         let message = "expected 0 <= innerConeAngle <= outerConeAngle <= pi/2; clamped";
         report.warn(format!("{pointer}/spot"), message);
     }

@@ -115,7 +115,7 @@ impl Job<'_> {
     ) -> Read<()> {
         let vertices = mesh.vertices.len();
         let pick = |accessor: &Accessor| accessor.vectors(which);
-        if let Some(mut normals) = self.vectors_of(document, Semantic::Normals, count, notes, pick)? {
+        if let Some(mut normals) = self.vectors_of(document, &Semantic::Normals, count, notes, pick)? {
             self.morph(document, which, &mut normals, notes, |target| target.normals)?;
             normals.truncate(vertices);
             mesh.normals = self.vectors(&normals)?;
@@ -130,13 +130,13 @@ impl Job<'_> {
             }
         }
         let pick = |accessor: &Accessor| accessor.colors(which);
-        if let Some(mut colors) = self.vectors_of(document, Semantic::Colors(0), count, notes, pick)? {
+        if let Some(mut colors) = self.vectors_of(document, &Semantic::Colors(0), count, notes, pick)? {
             self.settle(&mut colors, [1.0; 4], "COLOR_0", "colours are not finite; taken as white", notes);
             mesh.colors = colors.into_iter().take(vertices).map(Vec4::from_array).collect();
         }
         let Some(map) = self.normal_map else { return Ok(()) };
         let pick = |accessor: &Accessor| accessor.vectors(which);
-        let tangents: Option<Vec<[f32; 4]>> = self.vectors_of(document, Semantic::Tangents, count, notes, pick)?;
+        let tangents: Option<Vec<[f32; 4]>> = self.vectors_of(document, &Semantic::Tangents, count, notes, pick)?;
         let are_odd = |tangents: &Vec<[f32; 4]>| tangents.iter().flatten().any(|v| !v.is_finite());
         if tangents.as_ref().is_some_and(are_odd) {
             let pointer = format!("{}/attributes/TANGENT", self.pointer);
@@ -162,9 +162,9 @@ impl Job<'_> {
         notes: &mut Notes,
     ) -> Read<Option<Vec<[f32; 2]>>> {
         let pick = |accessor: &Accessor| accessor.vectors(which);
-        let mut uvs = self.vectors_of(document, Semantic::TexCoords(set), count, notes, pick)?;
+        let mut uvs = self.vectors_of(document, &Semantic::TexCoords(set), count, notes, pick)?;
         if uvs.is_none() && set != 0 {
-            uvs = self.vectors_of(document, Semantic::TexCoords(0), count, notes, pick)?;
+            uvs = self.vectors_of(document, &Semantic::TexCoords(0), count, notes, pick)?;
             if uvs.is_some() {
                 let message = format!("no texture coordinates {set} can be read; the first are used");
                 notes.add(&*self.pointer, message);
@@ -199,12 +199,12 @@ impl Job<'_> {
     fn vectors_of<const N: usize>(
         &self,
         document: &Document,
-        semantic: Semantic,
+        semantic: &Semantic,
         count: usize,
         notes: &mut Notes,
         pick: impl Fn(&Accessor) -> Read<Vec<[f32; N]>>,
     ) -> Read<Option<Vec<[f32; N]>>> {
-        let (name, is_color) = (semantic.to_string(), semantic == Semantic::Colors(0));
+        let (name, is_color) = (semantic.to_string(), *semantic == Semantic::Colors(0));
         let read = |notes: &mut Notes| {
             let Some(accessor) = self.open(document, semantic.clone(), notes)? else { return Ok(None) };
             let (entries, pointer) = (accessor.count(), format!("{}/attributes/{name}", self.pointer));

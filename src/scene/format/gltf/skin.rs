@@ -13,6 +13,7 @@ use gltf::json::{Index, Node, Skin};
 
 /// Moves a mesh to where joints hold it. `which` of the primitive's vertices the mesh has. What no joint holds is left where
 /// it is.
+#[allow(clippy::too_many_arguments, reason = "parts of a file, borrowed apart")]
 pub fn hold(
     document: &Document,
     primitive: &Primitive,

@@ -64,7 +64,7 @@ impl Options {
             match name {
                 b"-bm" => match words.next().map(|word| word.number()) {
                     Some(Ok(bump)) => self.bump = bump as f32,
-                    Some(Err(problem)) => odd.push(left_out(problem)),
+                    Some(Err(problem)) => odd.push(left_out(&problem)),
                     None => {}
                 },
                 b"-clamp" => self.is_clamped = words.next().is_some_and(|word| word.bytes.eq_ignore_ascii_case(b"on")),
@@ -80,7 +80,7 @@ impl Options {
                         words.next();
                         *number = value
                             .number()
-                            .map_err(|problem| odd.push(left_out(problem)))
+                            .map_err(|problem| odd.push(left_out(&problem)))
                             .ok()
                             .map(|value| value as f32);
                     }
@@ -105,7 +105,7 @@ fn is_no_number(word: &[u8]) -> bool {
 }
 
 /// What is told of something that is left out.
-pub fn left_out(problem: Problem) -> Problem {
+pub fn left_out(problem: &Problem) -> Problem {
     Problem::new(problem.at, format!("{}; it is left out", problem.message))
 }
 

@@ -65,7 +65,7 @@ pub fn read(
                     warnings.push(statement.at, format!("{} is not drawn", statement.shown()));
                 }
             }
-            Err(problem) => warnings.push(problem.at, left_out(problem).message),
+            Err(problem) => warnings.push(problem.at, left_out(&problem).message),
         }
     }
     materials.extend(draft.map(|draft| draft.finish(textures)));

@@ -43,7 +43,6 @@ use crate::scene::error::SceneError;
 use map::{Textures, slashes};
 use mesh::Meshes;
 use statement::bare;
-use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
@@ -142,7 +141,7 @@ impl Materials {
                 continue;
             }
             match builder.read_file(&name) {
-                Ok(bytes) => self.read(&name, bytes, library.at, file, builder),
+                Ok(bytes) => self.read(&name, &bytes, library.at, file, builder),
                 Err(error) => self.missing.push((NameRef { name, at: library.at }, error.to_string())),
             }
         }
@@ -162,15 +161,15 @@ impl Materials {
             return;
         }
         if let Ok(bytes) = builder.read_file(&name) {
-            self.read(&name, bytes, At(0), file, builder);
+            self.read(&name, &bytes, At(0), file, builder);
             self.beside = Some(name);
         }
     }
 
-    fn read(&mut self, name: &str, bytes: Cow<[u8]>, at: At, file: &Path, builder: &mut SceneBuilder) {
+    fn read(&mut self, name: &str, bytes: &[u8], at: At, file: &Path, builder: &mut SceneBuilder) {
         self.read += 1;
         self.textures.at = at;
-        let text = as_utf8(&bytes);
+        let text = as_utf8(bytes);
         let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder);
         let (materials, warnings) = material::read(&text, folder, &mut self.textures, |file| builder.has_file(file));
         for material in materials {
