@@ -96,11 +96,6 @@ impl Contacts {
         Some(contacts)
     }
 
-    /// How many primitives touch others.
-    pub fn len(&self) -> usize {
-        self.primitives.len()
-    }
-
     /// Whether nothing touches.
     pub fn is_empty(&self) -> bool {
         self.primitives.is_empty()
@@ -307,7 +302,7 @@ mod tests {
                 Part::new(Shape::Triangle { vertices }, PrimitiveId { object: 0, primitive })
             };
             let geometry = Geometry::build((0..).zip(corners).map(part).collect());
-            Contacts::new(&geometry, 1, |_| true, &|| true).unwrap().len()
+            Contacts::new(&geometry, 1, |_| true, &|| true).unwrap().primitives.len()
         };
         assert_eq!(contacts([[a, b, c], [a, c, d]]), 0);
         assert_eq!(contacts([[a, b, c], [a, c, b]]), 2);

@@ -12,12 +12,8 @@ impl Geometry {
                 self.visit_blocks(&[PrimitiveKind::Plane], within, visit);
                 self.overlapping_in_tree(bvh, within, visit);
             }
-            None => {
-                self.visit_blocks(PrimitiveKind::ALL, within, visit);
-                for number in 0..self.instances.placed.len() as u32 {
-                    self.instances.overlapping(number, within, visit);
-                }
-            }
+            // Where there are instances, there is a tree.
+            None => self.visit_blocks(PrimitiveKind::ALL, within, visit),
         }
     }
 

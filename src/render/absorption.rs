@@ -50,5 +50,5 @@ fn transmittance<S: Simd>(simd: S, absorption: Vec3, length: S::f32s) -> V3<S::f
 }
 
 fn absorption_of(scene: &Scene, object: u32) -> Vec3 {
-    scene.materials[scene.objects[object as usize].material as usize].absorption
+    scene.material_of(object).absorption
 }

@@ -36,7 +36,7 @@ const FLATTEST: f32 = 1.0 / 4096.0;
 /// Most interfaces between equal media that a ray passes in a row without a level of its path.
 const MOST_JOINTS: usize = 64;
 
-/// A place in an arena of [`Contacts`].
+/// An index into [`ContactArena`].
 pub type Link = u32;
 
 /// No contact.
@@ -56,12 +56,14 @@ struct Entry {
     extent: f32,
 }
 
-/// The face of a body.
-#[derive(Clone, Copy, Debug)]
-pub struct Face {
-    /// The primitive.
-    pub primitive: PrimitiveIndex,
-    /// Whether the ray leaves the body here.
+/// A surface in the place of a hit.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Crossing {
+    t: f32,
+    primitive: PrimitiveIndex,
+    /// The object that the surface belongs to.
+    pub object: u32,
+    /// Whether the ray leaves the object here.
     pub leaves: bool,
 }
 
@@ -69,14 +71,14 @@ pub struct Face {
 #[derive(Clone, Copy, Debug)]
 pub struct Mark(usize, usize);
 
-/// The places of one tile where surfaces touch.
+/// The arena of the places of one tile where surfaces touch.
 #[derive(Debug, Default)]
-pub struct Contacts {
+pub struct ContactArena {
     entries: Vec<Entry>,
-    faces: Vec<Face>,
+    faces: Vec<Crossing>,
 }
 
-impl Contacts {
+impl ContactArena {
     /// Where the arena ends now.
     pub fn mark(&self) -> Mark {
         Mark(self.entries.len(), self.faces.len())
@@ -103,21 +105,18 @@ impl Contacts {
         self.get(link).map_or(NO_CONTACT, |entry| entry.next)
     }
 
-    /// How far apart the first and the last surface of a place are, across surfaces whose normals towards the ray are
-    /// `facing`.
-    #[inline(never)]
-    pub fn depth<S: Simd>(&self, simd: S, links: S::u32s, direction: V3<S::f32s>, facing: V3<S::f32s>) -> S::f32s {
-        let along = S::f32s::from_fn(simd, |lane| self.get(links.as_slice()[lane]).map_or(0.0, |entry| entry.extent));
-        along * -direction.dot(facing)
+    /// How far along the ray the last surface in the place of a hit lies behind the first.
+    fn extent(&self, link: Link) -> f32 {
+        self.get(link).map_or(0.0, |entry| entry.extent)
     }
 
     /// The other faces of the interface that was hit.
-    pub fn faces(&self, link: Link) -> &[Face] {
+    pub fn faces(&self, link: Link) -> &[Crossing] {
         self.get(link).map_or(&[], |entry| &self.faces[entry.faces.0 as usize..entry.faces.1 as usize])
     }
 
     /// Appends the hits of one place, in the order in which they are met; the last one's interface has more `faces`.
-    fn push(&mut self, met: &[PrimitiveIndex], faces: &[Face], extent: f32) -> Link {
+    fn push(&mut self, met: &[PrimitiveIndex], faces: &[Crossing], extent: f32) -> Link {
         let first_face = self.faces.len() as u32;
         self.faces.extend_from_slice(faces);
         let first = self.entries.len() as Link + 1;
@@ -136,7 +135,7 @@ impl Contacts {
 
     /// What the thin surfaces that rays came through leave of light that comes the same way; 1 where there are none.
     #[inline(never)]
-    pub fn filter<S: Simd>(&self, simd: S, frame: &Frame<'_>, links: S::u32s, place: [V3<S::f32s>; 2]) -> V3<S::f32s> {
+    fn filter<S: Simd>(&self, simd: S, frame: &Frame<'_>, links: S::u32s, place: [V3<S::f32s>; 2]) -> V3<S::f32s> {
         simd.vectorize(
             #[inline(always)]
             || {
@@ -182,14 +181,38 @@ impl Contacts {
     }
 }
 
-/// The links of the packet at `at`, if any of its hits is of a place where surfaces touch.
-#[inline(always)]
-pub(super) fn links<S: Simd>(simd: S, frame: &Frame<'_>, rays: &RayQueue, at: usize) -> Option<S::u32s> {
-    if !frame.plan.contacts {
-        return None;
+/// What touches the surfaces that a packet hit.
+pub(super) struct Touching<S: Simd> {
+    /// The places of the hits.
+    pub links: S::u32s,
+    /// How far apart the first and the last surface of each place are.
+    pub depth: S::f32s,
+    /// What light that falls on the surfaces comes through in the same place leaves of it.
+    pub filter: V3<S::f32s>,
+}
+
+impl<S: Simd> Touching<S> {
+    /// What touches the surfaces at `position`, with the normals `facing` on the viewer's side, that the packet at `at` hit.
+    /// `None` where nothing does.
+    #[inline(always)]
+    pub fn of(
+        simd: S,
+        frame: &Frame<'_>,
+        arena: &ContactArena,
+        (rays, at): (&RayQueue, usize),
+        [position, direction, facing]: [V3<S::f32s>; 3],
+    ) -> Option<Self> {
+        if !frame.plan.contacts {
+            return None;
+        }
+        let links = S::u32s::from_slice(simd, &rays.contact[at..at + S::f32s::LEN]);
+        if !links.simd_ne(S::u32s::splat(simd, NO_CONTACT)).any_true() {
+            return None;
+        }
+        let along = S::f32s::from_fn(simd, |lane| arena.extent(links.as_slice()[lane]));
+        let filter = arena.filter(simd, frame, links, [position, direction]);
+        Some(Self { links, depth: along * -direction.dot(facing), filter })
     }
-    let links = S::u32s::from_slice(simd, &rays.contact[at..at + S::f32s::LEN]);
-    links.simd_ne(S::u32s::splat(simd, NO_CONTACT)).any_true().then_some(links)
 }
 
 /// Replaces hits in `worker.rays` by what is met first in their place, and links the rest to them.
@@ -208,29 +231,34 @@ pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &
         for at in at..worker.rays.len().min(at + S::f32s::LEN) {
             if let Some(entry) = worker.contacts.get(worker.rays.contact[at]) {
                 (worker.rays.primitive[at], worker.rays.t[at]) = (entry.primitive, 0.0);
-                continue;
-            }
-            for _ in 0..MOST_JOINTS {
-                let primitive = worker.rays.primitive[at];
-                if primitive == untouched || primitive == NO_PRIMITIVE {
-                    break;
-                }
-                let places = frame.scene.contacts.places_of(primitive);
-                if places.is_empty() {
-                    untouched = primitive;
-                    break;
-                }
-                let Some(tolerance) = tolerance_at(places, &worker.rays, at) else { break };
-                let goes_on = simd.vectorize(
-                    #[inline(always)]
-                    || resolve_ray(simd, frame, level, at, tolerance, worker),
-                );
-                if !goes_on {
-                    break;
-                }
+            } else if worker.rays.primitive[at] != untouched {
+                untouched = settle(simd, frame, level, at, worker).unwrap_or(untouched);
             }
         }
     }
+}
+
+/// Decides what one ray meets, through all joints on its way. Returns the primitive that it hit if that touches nothing.
+fn settle<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, worker: &mut Worker) -> Option<PrimitiveIndex> {
+    for _ in 0..MOST_JOINTS {
+        let primitive = worker.rays.primitive[at];
+        if primitive == NO_PRIMITIVE {
+            return None;
+        }
+        let places = frame.scene.contacts.places_of(primitive);
+        if places.is_empty() {
+            return Some(primitive);
+        }
+        let tolerance = tolerance_at(places, &worker.rays, at)?;
+        let goes_on = simd.vectorize(
+            #[inline(always)]
+            || resolve_ray(simd, frame, level, at, tolerance, worker),
+        );
+        if !goes_on {
+            return None;
+        }
+    }
+    None
 }
 
 /// How far apart surfaces may be in the place of a ray's hit, if it is one where they touch.
@@ -239,15 +267,6 @@ fn tolerance_at(places: &[Place], rays: &RayQueue, at: usize) -> Option<f32> {
     let (point, rounding) = (origin + rays.direction.get(at) * t, (origin.abs().max_element() + t) * ROUNDING);
     let around = places.iter().filter(|place| place.bounds.padded(rounding).holds(point));
     around.map(|place| place.tolerance + rounding).reduce(f32::max)
-}
-
-/// A surface in the place of a hit.
-#[derive(Clone, Copy, Debug, Default)]
-struct Crossing {
-    t: f32,
-    primitive: PrimitiveIndex,
-    object: u32,
-    leaves: bool,
 }
 
 /// Decides what a ray meets where surfaces touch. Tells whether it went on to another hit.
@@ -261,9 +280,11 @@ fn resolve_ray<S: Simd>(
     worker: &mut Worker,
 ) -> bool {
     let Worker { rays, stack, contacts, media, .. } = worker;
-    let ray = [rays.origin_of(at), rays.direction.get(at)];
+    // One ray in all lanes: what is searched by it looks at the first.
+    let (origin, direction) = (V3::splat(simd, rays.origin_of(at)), V3::splat(simd, rays.direction.get(at)));
+    let packet = Packet::new(&frame.scene.geometry, origin, direction);
     let mut found = [Crossing::default(); MOST + 1];
-    let count = collect(simd, frame, ray, rays.t[at], tolerance, stack, &mut found);
+    let count = collect(simd, frame, &packet, rays.t[at], tolerance, stack, &mut found);
     let found = &found[..count];
     if count < 2 {
         return false;
@@ -277,29 +298,29 @@ fn resolve_ray<S: Simd>(
         met[thin] = crossing.primitive;
         thin += 1;
     }
-    let mut faces = [Face { primitive: NO_PRIMITIVE, leaves: false }; MOST + 1];
+    let mut faces = [Crossing::default(); MOST + 1];
     let mut others = 0;
     let mut last = found.iter().find(|crossing| !passes(crossing));
     if last.is_none() {
         let bodies = || found.iter().filter(passes).filter(|crossing| is_body(crossing));
         if thin == 0 && frame.plan.refractions && bodies().all(|crossing| is_clear(frame, crossing)) {
-            let list = bodies().fold(rays.media[at], |list, crossing| match crossing.leaves {
-                true => media.leave(list, crossing.object),
-                false => media.enter(list, crossing.object),
-            });
-            let matter = |list| media.current(list).map_or((1.0, Vec3::ZERO), |body| matter(frame, body));
+            let list = bodies().fold(rays.media[at], |list, face| media.cross(list, face.object, face.leaves));
+            let matter = |list| {
+                let material = media.current(list).map(|body| frame.scene.material_of(body));
+                material.map_or((1.0, Vec3::ZERO), |material| (material.ior, material.absorption))
+            };
             if matter(list) == matter(rays.media[at]) {
                 // The same glass goes on: nothing is there to be seen.
                 let far = if level == 1 { frame.camera.far } else { f32::INFINITY };
                 rays.media[at] = list;
-                (rays.primitive[at], rays.t[at]) = next_hit(simd, frame, ray, found[count - 1].t, far, stack);
+                (rays.primitive[at], rays.t[at]) = next_hit(simd, frame, &packet, found[count - 1].t, far, stack);
                 return true;
             }
         }
         let mut bodies = bodies();
         last = bodies.next();
         for crossing in bodies {
-            faces[others] = Face { primitive: crossing.primitive, leaves: crossing.leaves };
+            faces[others] = *crossing;
             others += 1;
         }
     }
@@ -326,28 +347,20 @@ fn is_clear(frame: &Frame<'_>, crossing: &Crossing) -> bool {
     untouched && is(Row::Transparency, 1.0) && is(Row::Color, 1.0) && is(Row::Reflectivity, 0.0)
 }
 
-/// Index of refraction and absorption of a body.
-fn matter(frame: &Frame<'_>, body: u32) -> (f32, Vec3) {
-    let material = &frame.scene.materials[frame.scene.objects[body as usize].material as usize];
-    (material.ior, material.absorption)
-}
-
 /// What a ray hits beyond `t`, and how far away.
 #[inline(always)]
 fn next_hit<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
-    [origin, direction]: [Vec3; 2],
+    packet: &Packet<S>,
     t: f32,
     far: f32,
     stack: &mut Stack,
 ) -> (PrimitiveIndex, f32) {
-    let geometry = &frame.scene.geometry;
-    let packet = Packet::new(geometry, V3::splat(simd, origin), V3::splat(simd, direction));
     // One lane is enough.
     let limit = S::f32s::from_fn(simd, |lane| if lane == 0 { far } else { -1.0 });
     let mut visitor = ClosestHit::new(simd, S::f32s::splat(simd, t), limit);
-    Search::new(geometry, frame.plan.tree).traverse_alone(simd, &packet, stack, &mut visitor);
+    Search::new(&frame.scene.geometry, frame.plan.tree).traverse_alone(simd, packet, stack, &mut visitor);
     let primitive = visitor.primitive[0];
     (primitive, if primitive == NO_PRIMITIVE { f32::INFINITY } else { visitor.t[0] })
 }
@@ -359,26 +372,22 @@ fn next_hit<S: Simd>(
 fn collect<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
-    [origin, direction]: [Vec3; 2],
+    packet: &Packet<S>,
     t: f32,
     tolerance: f32,
     stack: &mut Stack,
     found: &mut [Crossing; MOST + 1],
 ) -> usize {
-    let (origin, direction) = (V3::splat(simd, origin), V3::splat(simd, direction));
-    let packet = Packet::new(&frame.scene.geometry, origin, direction);
-    let search = Search::new(&frame.scene.geometry, frame.plan.tree);
     let mut window = Window {
         simd,
-        after: t - tolerance / FLATTEST,
+        after: (t - tolerance / FLATTEST).max(0.0),
         limit: t + tolerance / FLATTEST,
         opaque: frame.tables.opaque(&frame.scene.geometry),
         first_opaque: None,
         hits: [(0.0, 0); MOST],
         len: 0,
     };
-    window.after = window.after.max(0.0);
-    search.traverse_alone(simd, &packet, stack, &mut window);
+    Search::new(&frame.scene.geometry, frame.plan.tree).traverse_alone(simd, packet, stack, &mut window);
     let mut hits = [(0.0, 0); MOST + 1];
     let mut len = window.len;
     hits[..len].copy_from_slice(&window.hits[..len]);
@@ -396,7 +405,7 @@ fn collect<S: Simd>(
         for (lane, &(t, primitive)) in hits.iter().enumerate() {
             (distances[lane], primitives[lane]) = (t, primitive);
         }
-        let cosines = cosines(simd, frame, &primitives[..S::f32s::LEN], origin, direction, &distances[..S::f32s::LEN]);
+        let cosines = cosines(simd, frame, packet, &primitives[..S::f32s::LEN], &distances[..S::f32s::LEN]);
         for (lane, &(other, primitive)) in hits.iter().enumerate() {
             let cosine = cosines[lane];
             let gap = (other - t).abs() * cosine.abs().max(FLATTEST);
@@ -422,12 +431,12 @@ fn collect<S: Simd>(
 fn cosines<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
+    packet: &Packet<S>,
     primitives: &[PrimitiveIndex],
-    origin: V3<S::f32s>,
-    direction: V3<S::f32s>,
     t: &[f32],
 ) -> S::f32s {
     let hits = Hits::new(simd, primitives);
+    let (origin, direction) = (packet.rays.origin, packet.rays.direction);
     let t = S::f32s::from_slice(simd, t);
     surfaces(simd, frame, &hits, origin, direction, t).point.normal.dot(direction)
 }
@@ -449,8 +458,9 @@ struct Window<'a, S> {
 impl<S> Window<'_, S> {
     fn add(&mut self, t: f32, primitive: PrimitiveIndex) {
         if self.opaque.contains(primitive) {
-            let is_first = self.first_opaque.is_none_or(|first| (t, primitive) < first);
-            self.first_opaque = if is_first { Some((t, primitive)) } else { self.first_opaque };
+            if self.first_opaque.is_none_or(|first| (t, primitive) < first) {
+                self.first_opaque = Some((t, primitive));
+            }
             return;
         }
         let hits = &self.hits[..self.len];

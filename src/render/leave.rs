@@ -9,7 +9,7 @@ use fearless_simd::prelude::*;
 const MARGIN: f32 = 1.0 / (1 << 19) as f32;
 
 /// Least cosine at which a ray moves along itself only. Flatter ones would have to go too far.
-pub const FLATTEST: f32 = 1.0 / 16.0;
+const FLATTEST: f32 = 1.0 / 16.0;
 
 /// The margin at a hit point of a given scale.
 #[inline(always)]

@@ -72,6 +72,11 @@ impl Media {
         rest
     }
 
+    /// The list after leaving or entering a body.
+    pub fn cross(&mut self, list: MediaList, object: u32, leaves: bool) -> MediaList {
+        if leaves { self.leave(list, object) } else { self.enter(list, object) }
+    }
+
     /// The body whose matter the ray is in: the last entered and not left.
     pub fn current(&self, list: MediaList) -> Option<u32> {
         self.bodies(list).next()

@@ -74,8 +74,7 @@ impl Plan {
 
     pub(super) fn with_tables(scene: &Scene, settings: &Settings, tables: &Tables) -> Self {
         let has = |kind| scene.geometry.blocks_of(kind) > 0;
-        let absorbs =
-            |object: u32| scene.materials[scene.objects[object as usize].material as usize].absorption != Vec3::ZERO;
+        let absorbs = |object: u32| scene.material_of(object).absorption != Vec3::ZERO;
         let depth = settings.depth.unwrap_or(scene.render.max_depth);
         let refractions = settings.refractions && depth > 1 && tables.opaque.is_some();
         let reflections = settings.reflections && depth > 1 && tables.materials.iter().any(|m| m.secondary);

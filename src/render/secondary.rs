@@ -1,7 +1,7 @@
 //! The rays that follow from hits: mirrored, and refracted by Snell's law with exact Fresnel terms.
 
 use super::brdf;
-use super::contact::{Contacts, NO_CONTACT};
+use super::contact::{ContactArena, NO_CONTACT, Touching};
 use super::frame::Frame;
 use super::gather::{Hits, bits};
 use super::leave;
@@ -39,7 +39,7 @@ pub(super) struct Incident<'a, S: Simd> {
     pub sample: S::u32s,
     pub media: S::u32s,
     /// What touches the surfaces, if anything does.
-    pub contact: Option<S::u32s>,
+    pub touching: Option<&'a Touching<S>>,
     /// The primitive, where it is flat; else [`NO_PRIMITIVE`].
     pub flat: S::u32s,
     /// How long the way from the eye is.
@@ -82,7 +82,7 @@ pub(super) fn follow<S: Simd>(
     materials: &impl Materials<S>,
     incident: &Incident<'_, S>,
     media: &mut Media,
-    contacts: &Contacts,
+    contacts: &ContactArena,
     [mirrored, refracted]: [&mut RayQueue; 2],
     counts: &mut RayCounts,
 ) {
@@ -97,8 +97,8 @@ pub(super) fn follow<S: Simd>(
     };
     if transparent.lanes != 0 {
         let index = outside_index(simd, frame, incident, &transparent, media);
-        if let Some(links) = incident.contact {
-            interface = Interface::new(simd, frame, incident, &transparent, links, contacts, media);
+        if let Some(touching) = incident.touching {
+            interface = Interface::new(simd, frame, incident, &transparent, touching.links, contacts, media);
         }
         let through = refract(simd, frame, materials, incident, cosine, index, interface.as_ref(), transparent.bodies);
         let lanes = Mask::<S>::from_bitmask(simd, transparent.lanes);
@@ -120,15 +120,13 @@ pub(super) fn follow<S: Simd>(
 
     if frame.plan.reflections {
         let mut weight = incident.weight * split.reflected;
-        let mut margin = incident.margin;
-        if let Some(links) = incident.contact {
-            margin += contacts.depth(simd, links, incident.direction, incident.facing);
-            weight = weight * contacts.filter(simd, frame, links, [incident.position, incident.direction]);
+        if let Some(touching) = incident.touching {
+            weight = weight * touching.filter;
         }
         let heavy = incident.spawning & heavy(simd, weight, frame.settings.min_weight);
         if heavy.any_true() {
             let direction = hold_unit::<S>(incident.direction + incident.normal.scale(cosine * 2.0));
-            let start = leave::start::<S>(incident.position, incident.facing, margin, direction);
+            let start = leave::start::<S>(incident.position, incident.facing, incident.margin, direction);
             let contact = frame.plan.contacts.then(|| S::u32s::splat(simd, NO_CONTACT));
             let lineage = incident.lineage(incident.media, contact, incident.flat);
             mirrored.push_lanes::<S>(heavy, start, direction, weight, &lineage);
@@ -137,11 +135,8 @@ pub(super) fn follow<S: Simd>(
     }
     if frame.plan.refractions && transparent.lanes != 0 {
         let mut weight = incident.weight * (split.refracted * tint);
-        let mut margin = incident.margin;
-        if let Some(links) = incident.contact {
-            weight = weight * contacts.tint(simd, frame, links, [incident.position, incident.direction]);
-            // Off the last surface of the place, not the first.
-            margin += contacts.depth(simd, links, incident.direction, incident.facing);
+        if let Some(touching) = incident.touching {
+            weight = weight * contacts.tint(simd, frame, touching.links, [incident.position, incident.direction]);
         }
         let heavy = incident.spawning & heavy(simd, weight, frame.settings.min_weight);
         if heavy.any_true() {
@@ -154,10 +149,10 @@ pub(super) fn follow<S: Simd>(
             if let Some(interface) = &interface {
                 inside = interface.lanes.select(interface.media, inside);
             }
-            let start = leave::start::<S>(incident.position, -incident.facing, margin, split.inward);
+            let start = leave::start::<S>(incident.position, -incident.facing, incident.margin, split.inward);
             let nothing = S::u32s::splat(simd, NO_PRIMITIVE);
-            let contact = frame.plan.contacts.then(|| match incident.contact {
-                Some(links) => S::u32s::from_fn(simd, |lane| contacts.next(links.as_slice()[lane])),
+            let contact = frame.plan.contacts.then(|| match incident.touching {
+                Some(touching) => S::u32s::from_fn(simd, |lane| contacts.next(touching.links.as_slice()[lane])),
                 None => S::u32s::splat(simd, NO_CONTACT),
             });
             refracted.push_lanes::<S>(heavy, start, split.inward, weight, &incident.lineage(inside, contact, nothing));
@@ -184,7 +179,7 @@ impl<S: Simd> Interface<S> {
         incident: &Incident<'_, S>,
         transparent: &Transparent,
         links: S::u32s,
-        contacts: &Contacts,
+        contacts: &ContactArena,
         media: &mut Media,
     ) -> Option<Self> {
         let mut found: Option<Self> = None;
@@ -194,18 +189,11 @@ impl<S: Simd> Interface<S> {
             if faces.is_empty() {
                 continue;
             }
-            let mut cross = |list: MediaList, object: u32, leaves: bool| {
-                if leaves { media.leave(list, object) } else { media.enter(list, object) }
-            };
-            let first = cross(incident.media.as_slice()[lane], transparent.objects[lane], leaving >> lane & 1 == 1);
-            let list = faces
-                .iter()
-                .fold(first, |list, face| cross(list, frame.scene.geometry.object_of(face.primitive), face.leaves));
-            let index = |list: MediaList| {
-                let body = media.current(list).map(|body| &frame.scene.objects[body as usize]);
-                body.map_or(1.0, |body| frame.scene.materials[body.material as usize].ior)
-            };
-            let indices = [index(incident.media.as_slice()[lane]), index(list)];
+            let before = incident.media.as_slice()[lane];
+            let first = media.cross(before, transparent.objects[lane], leaving >> lane & 1 == 1);
+            let list = faces.iter().fold(first, |list, face| media.cross(list, face.object, face.leaves));
+            let index = |list: MediaList| media.current(list).map_or(1.0, |body| frame.scene.material_of(body).ior);
+            let indices = [index(before), index(list)];
             let interface = found.get_or_insert_with(|| Self {
                 lanes: Mask::<S>::splat(simd, false),
                 indices: [S::f32s::splat(simd, 1.0); 2],
@@ -280,8 +268,7 @@ fn outside_index<S: Simd>(
         #[inline(always)]
         |list, object, lanes| {
             if let Some(around) = media.around(list, object) {
-                let material = &frame.scene.materials[frame.scene.objects[around as usize].material as usize];
-                index = lanes.select(S::f32s::splat(simd, material.ior), index);
+                index = lanes.select(S::f32s::splat(simd, frame.scene.material_of(around).ior), index);
             }
         },
     );
@@ -380,7 +367,7 @@ fn cross<S: Simd>(
             crossing,
             #[inline(always)]
             |list, object, lanes| {
-                let next = if leaves { media.leave(list, object) } else { media.enter(list, object) };
+                let next = media.cross(list, object, leaves);
                 inside = lanes.select(S::u32s::splat(simd, next), inside);
             },
         );

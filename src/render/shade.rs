@@ -2,7 +2,7 @@
 
 use super::absorption::absorb;
 use super::brdf::Reflectance;
-use super::contact;
+use super::contact::Touching;
 use super::direct::{Lit, light_gain};
 use super::frame::Frame;
 use super::gather::{Hits, Surfaces, surfaces, surfaces_of_one, surfaces_of_several};
@@ -149,7 +149,8 @@ fn follow_one<S: Simd>(simd: S, frame: &Frame<'_>, at: usize, primitive: Primiti
     let surfaces = surfaces_of_one(simd, frame, &hits, primitive, rays.origin, rays.direction, rays.t);
     let skin = Skin::of(simd, frame, &hits, &surfaces, &materials, &rays.sight(frame, &surfaces));
     let view = View::new(simd, &surfaces, skin.normal(frame, &surfaces), rays.direction);
-    follow(simd, frame, 1, at, &hits, &rays, &surfaces, &view, &materials, &skin, worker);
+    // A patch of local light touches nothing.
+    follow(simd, frame, 1, at, &hits, &rays, &surfaces, &view, &materials, &skin, None, worker);
 }
 
 /// Shades the packet at `at`, whose hits are of several primitives.
@@ -251,20 +252,16 @@ fn shade_surfaces<S: Simd>(
     let own = V3::select(active, own, background);
     colors.deposit(simd, level == 1, samples, present::<S>(rays, at), own);
 
-    // Light that falls on the surface comes through what lies before it in the same place.
-    let (mut lit_weight, mut lit_margin) = (covered, leave::margin::<S>(surfaces.point.scale));
-    if let Some(links) = contact::links(simd, frame, rays, at) {
-        lit_weight = covered * contacts.filter(simd, frame, links, [incoming.origin, direction]);
-        lit_margin += contacts.depth(simd, links, direction, view.facing);
-    }
+    let place = [surfaces.point.position, direction, view.facing];
+    let touching = Touching::of(simd, frame, contacts, (rays, at), place);
     let lit = Lit::<S> {
         active,
         position: surfaces.point.position,
         facing: view.facing,
-        margin: lit_margin,
+        margin: margin(surfaces, touching.as_ref()),
         normal: view.normal,
         to_viewer: -direction,
-        weight: lit_weight,
+        weight: touching.as_ref().map_or(covered, |touching| covered * touching.filter),
     };
     let reflectance = Reflectance::gather(simd, frame, materials, &skin, opacity);
     let sample = S::u32s::from_slice(simd, samples);
@@ -284,7 +281,7 @@ fn shade_surfaces<S: Simd>(
     }
 
     if paint.is_none() {
-        follow(simd, frame, level, at, hits, incoming, surfaces, &view, materials, &skin, worker);
+        follow(simd, frame, level, at, hits, incoming, surfaces, &view, materials, &skin, touching.as_ref(), worker);
     }
 }
 
@@ -295,6 +292,13 @@ fn unmapped<S: Simd>(simd: S, frame: &Frame<'_>, materials: &impl Materials<S>, 
     let gain = S::f32s::splat(simd, frame.tables.unlit_gain());
     let light = undo_neutral(simd, own.scale(S::f32s::splat(simd, 1.0) / gain)).scale(gain);
     V3::select(materials.lanes(simd, |material| material.unlit), light, own)
+}
+
+/// How far off surfaces rays start: beyond all that touches them.
+#[inline(always)]
+fn margin<S: Simd>(surfaces: &Surfaces<S>, touching: Option<&Touching<S>>) -> S::f32s {
+    let margin = leave::margin::<S>(surfaces.point.scale);
+    touching.map_or(margin, |touching| margin + touching.depth)
 }
 
 /// Appends the rays that follow from a packet's hits.
@@ -311,6 +315,7 @@ fn follow<S: Simd>(
     view: &View<S>,
     materials: &impl Materials<S>,
     skin: &Skin<S>,
+    touching: Option<&Touching<S>>,
     worker: &mut Worker,
 ) {
     if level < frame.plan.depth
@@ -333,14 +338,14 @@ fn follow<S: Simd>(
             direction: incoming.direction,
             position: surfaces.point.position,
             facing: view.facing,
-            margin: leave::margin::<S>(surfaces.point.scale),
+            margin: margin(surfaces, touching),
             normal: view.normal,
             from_behind: view.from_behind,
             skin,
             weight: incoming.weight,
             sample: S::u32s::from_slice(simd, &rays.sample[lanes.clone()]),
             media: S::u32s::from_slice(simd, &rays.media[lanes]),
-            contact: contact::links(simd, frame, rays, at),
+            touching,
             flat: flat.select(primitives, S::u32s::splat(simd, NO_PRIMITIVE)),
             way: incoming.way,
         };

@@ -232,12 +232,11 @@ pub struct Tables {
 impl Tables {
     /// The tables of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let material_of = |object: u32| &scene.materials[scene.objects[object as usize].material as usize];
         let transparent = scene.objects.iter().any(|o| scene.materials[o.material as usize].is_transparent());
         let opaque =
-            transparent.then(|| OpaqueList::new(&scene.geometry, |object| !material_of(object).is_transparent()));
+            transparent.then(|| OpaqueList::new(&scene.geometry, |object| !scene.material_of(object).is_transparent()));
         let transparent_bodies = (0..scene.objects.len() as u32)
-            .filter(|&o| scene.objects[o as usize].body && material_of(o).is_transparent())
+            .filter(|&o| scene.objects[o as usize].body && scene.material_of(o).is_transparent())
             .collect();
         let materials: Vec<FlatMaterial> =
             scene.materials.iter().map(|material| FlatMaterial::new(material, &scene.textures)).collect();

@@ -1,7 +1,7 @@
 //! One tile: visibility, then queue after queue of its paths, then bytes. No recursion.
 
 use super::accumulate::{self, Progress};
-use super::contact::{self, Contacts};
+use super::contact::{self, ContactArena};
 use super::enlarge::Enlargement;
 use super::extent::Lists;
 use super::film::FilmTile;
@@ -31,7 +31,7 @@ pub struct Worker {
     pub(super) found: RayQueue,
     pub(super) shadows: Vec<ShadowQueue>,
     pub(super) media: Media,
-    pub(super) contacts: Contacts,
+    pub(super) contacts: ContactArena,
     pub(super) shadow_scratch: shadow::ShadowScratch,
     /// Colour of each sample of the tile's grid.
     pub(super) color: Colors,

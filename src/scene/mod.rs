@@ -166,6 +166,11 @@ impl Scene {
         !self.objects.is_empty() && self.objects.iter().all(|object| self.materials[object.material as usize].unlit)
     }
 
+    /// The material of an object.
+    pub fn material_of(&self, object: u32) -> &Material {
+        &self.materials[self.objects[object as usize].material as usize]
+    }
+
     /// A point of the scene in the coordinates of its file.
     pub fn in_file(&self, point: Vec3) -> DVec3 {
         camera::in_file(point, self.origin)

@@ -8,7 +8,6 @@
 //! [`Instances::find`] tells what an index means.
 
 mod near;
-mod overlap;
 mod search;
 mod shared;
 mod walk;
@@ -45,9 +44,6 @@ pub struct Instance {
     /// Triangles of all instances up to and with this one.
     shared_before_end: u32,
 }
-
-/// Share of all lengths that rounding may take, on the way to the mesh's space and in its boxes; generously.
-const SLACK: f64 = 1e-5;
 
 /// What a triangle takes, about, that is stored in the world: with its share of the tree, and its names.
 const BARE_BYTES: usize = 130;
