@@ -11,7 +11,7 @@
 //!    the body behind the last. The picture is the limit of bodies that overlap.
 
 use super::frame::Frame;
-use super::gather::{Hits, surfaces, transmission};
+use super::gather::{Hits, bits, surfaces, transmission};
 use super::queue::{MOST_LANES, RayQueue};
 use super::tables::Row;
 use super::tile::Worker;
@@ -202,63 +202,119 @@ impl<S: Simd> Touching<S> {
         (rays, at): (&RayQueue, usize),
         [position, direction, facing]: [V3<S::f32s>; 3],
     ) -> Option<Self> {
-        if !frame.plan.contacts {
+        if !touches(simd, frame, rays, at) {
             return None;
         }
-        let links = S::u32s::from_slice(simd, &rays.contact[at..at + S::f32s::LEN]);
-        if !links.simd_ne(S::u32s::splat(simd, NO_CONTACT)).any_true() {
-            return None;
-        }
+        let links = links(simd, rays, at);
         let along = S::f32s::from_fn(simd, |lane| arena.extent(links.as_slice()[lane]));
         let filter = arena.filter(simd, frame, links, [position, direction]);
         Some(Self { links, depth: along * -direction.dot(facing), filter })
     }
 }
 
+/// Whether any hit of the packet at `at` is of a place where surfaces touch.
+#[inline(always)]
+pub(super) fn touches<S: Simd>(simd: S, frame: &Frame<'_>, rays: &RayQueue, at: usize) -> bool {
+    frame.plan.contacts && links(simd, rays, at).simd_ne(S::u32s::splat(simd, NO_CONTACT)).any_true()
+}
+
+#[inline(always)]
+fn links<S: Simd>(simd: S, rays: &RayQueue, at: usize) -> S::u32s {
+    S::u32s::from_slice(simd, &rays.contact[at..at + S::f32s::LEN])
+}
+
 /// Replaces hits in `worker.rays` by what is met first in their place, and links the rest to them.
 pub(super) fn resolve<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, worker: &mut Worker) {
-    // Neighbours hit the same primitive, and most touch nothing.
-    let mut untouched = NO_PRIMITIVE;
-    for at in (0..worker.rays.len()).step_by(S::f32s::LEN) {
-        let lanes = at..at + S::f32s::LEN;
-        let primitives = S::u32s::from_slice(simd, &worker.rays.primitive[lanes.clone()]);
-        let links = S::u32s::from_slice(simd, &worker.rays.contact[lanes]);
-        let known = primitives.simd_eq(S::u32s::splat(simd, untouched))
-            | primitives.simd_eq(S::u32s::splat(simd, NO_PRIMITIVE));
-        if (known & links.simd_eq(S::u32s::splat(simd, NO_CONTACT))).all_true() {
-            continue;
-        }
-        for at in at..worker.rays.len().min(at + S::f32s::LEN) {
-            if let Some(entry) = worker.contacts.get(worker.rays.contact[at]) {
-                (worker.rays.primitive[at], worker.rays.t[at]) = (entry.primitive, 0.0);
-            } else if worker.rays.primitive[at] != untouched {
-                untouched = settle(simd, frame, level, at, worker).unwrap_or(untouched);
+    // Rays from the eye come from no surface.
+    let first = if level == 1 { 0 } else { worker.rays.len() };
+    worker.rays.clear_contacts(first);
+    let mut known = Known { primitive: NO_PRIMITIVE, places: &[] };
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for at in (0..worker.rays.len()).step_by(S::f32s::LEN) {
+                resolve_packet(simd, frame, level, at, &mut known, worker);
             }
+        },
+    );
+}
+
+/// The places of the primitive that was asked for last: neighbours hit the same.
+struct Known<'a> {
+    primitive: PrimitiveIndex,
+    places: &'a [Place],
+}
+
+#[inline(always)]
+fn resolve_packet<'a, S: Simd>(
+    simd: S,
+    frame: &Frame<'a>,
+    level: u32,
+    at: usize,
+    known: &mut Known<'a>,
+    worker: &mut Worker,
+) {
+    let Worker { rays, contacts, .. } = worker;
+    let linked = links(simd, rays, at).simd_ne(S::u32s::splat(simd, NO_CONTACT)).to_bitmask();
+    for lane in bits(linked) {
+        if let Some(entry) = contacts.get(rays.contact[at + lane]) {
+            (rays.primitive[at + lane], rays.t[at + lane]) = (entry.primitive, 0.0);
         }
+    }
+    let primitives = S::u32s::from_slice(simd, &rays.primitive[at..at + S::f32s::LEN]);
+    let mut left = primitives.simd_ne(S::u32s::splat(simd, NO_PRIMITIVE)).to_bitmask() & !linked;
+    let mut touching = 0;
+    while left != 0 {
+        let primitive = primitives.as_slice()[left.trailing_zeros() as usize];
+        let same = primitives.simd_eq(S::u32s::splat(simd, primitive)).to_bitmask() & left;
+        left &= !same;
+        if known.primitive != primitive {
+            *known = Known { primitive, places: frame.scene.contacts.places_of(primitive) };
+        }
+        if !known.places.is_empty() {
+            touching |= same & lanes_within(simd, known.places, rays, at);
+        }
+    }
+    for lane in bits(touching) {
+        settle(simd, frame, level, at + lane, worker);
     }
 }
 
-/// Decides what one ray meets, through all joints on its way. Returns the primitive that it hit if that touches nothing.
-fn settle<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, worker: &mut Worker) -> Option<PrimitiveIndex> {
+/// Bit set of the lanes of the packet at `at` whose hits lie in one of some places, by the arithmetic of [`tolerance_at`].
+#[inline(always)]
+fn lanes_within<S: Simd>(simd: S, places: &[Place], rays: &RayQueue, at: usize) -> u64 {
+    let t = S::f32s::from_slice(simd, &rays.t[at..at + S::f32s::LEN]);
+    let origin: V3<S::f32s> = rays.origins(simd, at);
+    let direction: V3<S::f32s> = rays.direction.load(simd, at);
+    let point = origin + direction.scale(t);
+    let rounding = (origin.x.abs().max(origin.y.abs()).max(origin.z.abs()) + t) * ROUNDING;
+    let mut within = 0;
+    for Place { bounds, .. } in places {
+        let holds = |value: S::f32s, min: f32, max: f32| {
+            (S::f32s::splat(simd, min) - rounding).simd_le(value)
+                & (S::f32s::splat(simd, max) + rounding).simd_ge(value)
+        };
+        let inside = holds(point.x, bounds.min.x, bounds.max.x)
+            & holds(point.y, bounds.min.y, bounds.max.y)
+            & holds(point.z, bounds.min.z, bounds.max.z);
+        within |= inside.to_bitmask();
+    }
+    within
+}
+
+/// Decides what one ray meets, through all joints on its way.
+fn settle<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, worker: &mut Worker) {
     for _ in 0..MOST_JOINTS {
-        let primitive = worker.rays.primitive[at];
-        if primitive == NO_PRIMITIVE {
-            return None;
-        }
-        let places = frame.scene.contacts.places_of(primitive);
-        if places.is_empty() {
-            return Some(primitive);
-        }
-        let tolerance = tolerance_at(places, &worker.rays, at)?;
+        let places = frame.scene.contacts.places_of(worker.rays.primitive[at]);
+        let Some(tolerance) = tolerance_at(places, &worker.rays, at) else { return };
         let goes_on = simd.vectorize(
             #[inline(always)]
             || resolve_ray(simd, frame, level, at, tolerance, worker),
         );
         if !goes_on {
-            return None;
+            return;
         }
     }
-    None
 }
 
 /// How far apart surfaces may be in the place of a ray's hit, if it is one where they touch.

@@ -14,6 +14,9 @@ type Mask<S> = <<S as Simd>::f32s as SimdBase<S>>::Mask;
 
 /// What the surfaces that a packet hit are made of.
 pub(super) trait Materials<S: Simd> {
+    /// Whether the surfaces of the packet may touch others: all packets where any does are taken as mixed.
+    const MAY_TOUCH: bool;
+
     /// Whether any material passes a test.
     fn any(&self, test: impl Fn(&FlatMaterial) -> bool) -> bool;
 
@@ -43,6 +46,8 @@ impl<'a> OneMaterial<'a> {
 }
 
 impl<S: Simd> Materials<S> for OneMaterial<'_> {
+    const MAY_TOUCH: bool = false;
+
     #[inline(always)]
     fn any(&self, test: impl Fn(&FlatMaterial) -> bool) -> bool {
         test(self.0)
@@ -98,6 +103,8 @@ impl<'a, S: Simd> MixedMaterials<'a, S> {
 }
 
 impl<S: Simd> Materials<S> for MixedMaterials<'_, S> {
+    const MAY_TOUCH: bool = true;
+
     #[inline(always)]
     fn any(&self, test: impl Fn(&FlatMaterial) -> bool) -> bool {
         let mut passes = test(self.first);

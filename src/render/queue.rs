@@ -122,7 +122,8 @@ pub struct RayQueue {
     pub sample: Vec<u32>,
     /// The bodies it starts in.
     pub media: Vec<u32>,
-    /// What it meets at once, where surfaces touch; only where the plan looks at contacts.
+    /// What it meets at once, where surfaces touch; of rays from the eye only once that was looked for, and only if the plan
+    /// looks at contacts.
     pub contact: Vec<u32>,
     /// The flat primitive that mirrored it, or [`NO_PRIMITIVE`]; only of rays that follow from others.
     pub source: Vec<u32>,
@@ -246,7 +247,6 @@ impl RayQueue {
         self.reserve(first + count);
         (self.len, self.eye, self.unweighted) = (first + count, Some(eye), true);
         self.media[first..first + count].fill(media);
-        self.contact[first..first + count].fill(0);
         first
     }
 
@@ -268,8 +268,12 @@ impl RayQueue {
     pub fn clear_padding(&mut self) {
         let beyond = self.len..self.len + MOST_LANES;
         self.primitive[beyond.clone()].fill(NO_PRIMITIVE);
-        self.t[beyond.clone()].fill(0.0);
-        self.contact[beyond].fill(0);
+        self.t[beyond].fill(0.0);
+    }
+
+    /// Marks the rays from `first` on, and what is beyond the end, as meeting nothing at once.
+    pub fn clear_contacts(&mut self, first: usize) {
+        self.contact[first..self.len + MOST_LANES].fill(0);
     }
 }
 

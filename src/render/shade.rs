@@ -2,7 +2,7 @@
 
 use super::absorption::absorb;
 use super::brdf::Reflectance;
-use super::contact::Touching;
+use super::contact::{self, Touching};
 use super::direct::{Lit, light_gain};
 use super::frame::Frame;
 use super::gather::{Hits, Surfaces, surfaces, surfaces_of_one, surfaces_of_several};
@@ -97,8 +97,9 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
                 || follow_one(simd, frame, at, primitive, worker),
             );
         }
-    } else if let Some(primitive) = hits.common {
-        // Nearly all packets are such: apart from the others they need no masks and no loops over what else was hit.
+    } else if let Some(primitive) = hits.common.filter(|_| !contact::touches(simd, frame, &worker.rays, at)) {
+        // Nearly all packets are such: apart from the others they need no masks, no loops over what else was hit and no look
+        // at what touches them.
         simd.vectorize(
             #[inline(always)]
             || shade_one(simd, frame, level, at, primitive, worker),
@@ -196,7 +197,7 @@ impl<S: Simd> Incoming<S> {
 
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what is known of one packet, some of it at compile time")]
-fn shade_surfaces<S: Simd>(
+fn shade_surfaces<S: Simd, M: Materials<S>>(
     simd: S,
     frame: &Frame<'_>,
     level: u32,
@@ -204,7 +205,7 @@ fn shade_surfaces<S: Simd>(
     hits: &Hits<'_>,
     incoming: &Incoming<S>,
     surfaces: &Surfaces<S>,
-    materials: &impl Materials<S>,
+    materials: &M,
     worker: &mut Worker,
 ) {
     let lanes = at..at + S::f32s::LEN;
@@ -253,7 +254,7 @@ fn shade_surfaces<S: Simd>(
     colors.deposit(simd, level == 1, samples, present::<S>(rays, at), own);
 
     let place = [surfaces.point.position, direction, view.facing];
-    let touching = Touching::of(simd, frame, contacts, (rays, at), place);
+    let touching = if M::MAY_TOUCH { Touching::of(simd, frame, contacts, (rays, at), place) } else { None };
     let lit = Lit::<S> {
         active,
         position: surfaces.point.position,
