@@ -9,6 +9,7 @@ pub mod build;
 mod builtin;
 pub mod camera;
 pub mod desc;
+pub mod environment;
 pub mod error;
 pub mod files;
 pub mod format;
@@ -27,6 +28,7 @@ pub mod texture;
 pub use build::Instancing;
 pub use builtin::{builtin, nothing};
 pub use camera::{Camera, FileCamera};
+pub use environment::{Environment, Sky};
 pub use error::{SceneError, Warning};
 pub use format::{FORMATS, Format, LoadOptions, load, load_embedded, load_text, read_camera};
 pub use light::Light;
@@ -115,6 +117,10 @@ pub struct Scene {
     pub headlight: bool,
     /// Cameras of the file; the first is where a walk starts. Never empty: without one in the file, a view of the bounds.
     pub cameras: Vec<NamedCamera>,
+    /// Whether the first camera is that of somebody who stands on a floor: a walk starts on foot.
+    pub on_foot: bool,
+    /// The sky around it, if it has one.
+    pub environment: Option<Environment>,
     /// What the file asks of the picture.
     pub render: RenderDefaults,
     /// Stops of automatic exposure.
@@ -143,6 +149,7 @@ impl Scene {
             lights,
             headlight: false,
             cameras: self.cameras.clone(),
+            environment: self.environment.clone(),
             render: self.render.clone(),
             warnings: self.warnings.clone(),
             ..*self

@@ -18,20 +18,26 @@ const MARGIN: f64 = 1.05;
 /// Width by height of a picture whose scene gives none: a wide one is safe in both of the usual ones.
 const ASPECT: f64 = 4.0 / 3.0;
 
-/// The camera of a scene whose finite objects lie in `bounds`.
-pub fn start(probe: &mut Probe, bounds: Aabb, render: &RenderDefaults) -> Camera {
-    interior::stand(probe, bounds).unwrap_or_else(|| {
-        let camera = frame(bounds, render, false);
-        let shows = |probe: &mut Probe, camera: &Camera| {
-            probe.see(camera.eye, &brightness::view(camera), camera.near).iter().any(Option::is_some)
-        };
-        if !probe.knows_backs() || shows(probe, &camera) {
-            return camera;
-        }
-        // It shows nothing but backs, which are not seen.
-        let other = frame(bounds, render, true);
-        if shows(probe, &other) { other } else { camera }
-    })
+/// The camera of a scene whose finite objects lie in `bounds`, and whether it stands on a floor.
+pub fn start(probe: &mut Probe, bounds: Aabb, render: &RenderDefaults) -> (Camera, bool) {
+    match interior::stand(probe, bounds) {
+        Some(camera) => (camera, true),
+        None => (outside(probe, bounds, render), false),
+    }
+}
+
+/// A camera that sees everything finite, from the side where fronts are seen.
+fn outside(probe: &mut Probe, bounds: Aabb, render: &RenderDefaults) -> Camera {
+    let camera = frame(bounds, render, false);
+    let shows = |probe: &mut Probe, camera: &Camera| {
+        probe.see(camera.eye, &brightness::view(camera), camera.near).iter().any(Option::is_some)
+    };
+    if !probe.knows_backs() || shows(probe, &camera) {
+        return camera;
+    }
+    // It shows nothing but backs, which are not seen.
+    let other = frame(bounds, render, true);
+    if shows(probe, &other) { other } else { camera }
 }
 
 /// A camera whose picture holds `bounds`, from the other side if `from_behind`; without any, one at eye height that looks

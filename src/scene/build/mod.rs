@@ -341,8 +341,10 @@ impl SceneBuilder {
         let progress = self.progress.clone();
         let wanted = || !progress.is_cancelled();
         let mut probe = Probe::within(&geometry, Allowance::new(STEPS_AROUND, &wanted));
+        let mut on_foot = false;
         if self.cameras.is_empty() {
-            let camera = framing::start(&mut probe, finite_bounds(&self.objects), &self.render);
+            let (camera, stands) = framing::start(&mut probe, finite_bounds(&self.objects), &self.render);
+            on_foot = stands;
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
         }
         let auto_exposure = self.expose(&mut probe);
@@ -360,6 +362,8 @@ impl SceneBuilder {
             lights: self.lights,
             headlight,
             cameras: self.cameras,
+            on_foot,
+            environment: None,
             render: self.render,
             auto_exposure,
             warnings: self.warnings,
