@@ -4,6 +4,7 @@ use super::accumulate::Progress;
 use super::film::{FilmTile, TILE};
 use super::plan::Plan;
 use super::resolve::Encoder;
+use super::sky::Sky;
 use super::tables::Tables;
 use super::tile::{self, Worker};
 use super::{Film, FrameStats};
@@ -189,6 +190,8 @@ pub(super) struct Frame<'a> {
     /// How wide a pixel is at unit distance.
     pub pixel_spread: f32,
     pub lights: &'a [Light],
+    /// The sky around the scene.
+    pub sky: Option<Sky<'a>>,
     /// Ambient light of the scene.
     pub ambient: Vec3,
     pub sphere_terms: SphereTerms<'a>,
@@ -269,6 +272,7 @@ pub fn render_frame(
         beam_margin: *beam_margin,
         pixel_spread: 2.0 * view.up.length() / film.height() as f32,
         lights: if scene.headlight { &headlight } else { &scene.lights },
+        sky: tables.sky.as_ref().map(|light| Sky::new(light, tables.unlit_gain())),
         ambient: scene.render.ambient,
         sphere_terms: match plan.sphere_cache {
             SphereCache::Off => SphereTerms::None,

@@ -31,6 +31,7 @@ mod secondary;
 mod shade;
 mod shadow;
 mod skin;
+mod sky;
 pub mod stats;
 mod tables;
 mod texture_place;

@@ -47,6 +47,8 @@ pub struct Plan {
     pub tangents: bool,
     /// Some triangles carry colours.
     pub vertex_colors: bool,
+    /// A sky lights surfaces from everywhere.
+    pub sky: bool,
     /// What lies straight behind some surfaces shines through.
     pub blending: bool,
     /// Some surface shows its colour whatever the light.
@@ -107,6 +109,7 @@ impl Plan {
             relief,
             tangents: relief && tables.tangents,
             vertex_colors: tables.vertex_colors,
+            sky: tables.sky.is_some(),
             blending: tables.materials.iter().any(|m| m.blended),
             unlit: tables.materials.iter().any(|m| m.unlit),
             highlights: tables.materials.iter().any(|m| m.shiny),
@@ -240,6 +243,11 @@ impl Plan {
                 self.blending,
                 "blending: on, some surfaces let what lies straight behind shine through".to_owned(),
                 "blending: off, no surface is see-through by its opacity",
+            ),
+            say(
+                self.sky,
+                "sky: on, it lights surfaces from everywhere by formulas, without a ray and without shadows".to_owned(),
+                "sky: off, the scene has no environment",
             ),
             say(
                 self.emission,

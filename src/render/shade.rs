@@ -13,6 +13,7 @@ use super::resolve::undo_neutral;
 use super::samples::CELL;
 use super::secondary::{self, Incident};
 use super::skin::Skin;
+use super::sky;
 use super::tables::{MIRROR_ROUGHNESS, Row};
 use super::texture_place::Sight;
 use super::tile::{Seen, Worker};
@@ -88,7 +89,7 @@ fn shade_packet<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, at: usize, work
     let hits = Hits::new(simd, &worker.rays.primitive[lanes.clone()]);
     if hits.active == 0 {
         let Worker { rays, color, .. } = worker;
-        let background = rays.weights(simd, at) * V3::splat(simd, frame.scene.render.background);
+        let background = rays.weights(simd, at) * sky::beyond(simd, frame, level, rays, at);
         color.deposit(simd, level == 1, &rays.sample[lanes], present::<S>(rays, at), background);
     } else if level == 1 && is_lit(worker, at) {
         if let Some(primitive) = hits.common.filter(|_| frame.plan.reflections || frame.plan.refractions) {
@@ -245,12 +246,21 @@ fn shade_surfaces<S: Simd, M: Materials<S>>(
         ambient = V3::select(unlit, V3::splat(simd, Vec3::ONE), ambient);
     }
     let covered = if frame.plan.blending { weight.scale(skin.coverage) } else { weight };
-    let mut own = covered * (opacity * ambient * skin.color + skin.emission);
+    let mut given = skin.emission;
+    if let Some(sky) = &frame.sky {
+        let light = simd.vectorize(
+            #[inline(always)]
+            || sky::reflected(simd, frame, sky, materials, &skin, opacity, [view.normal, -direction]),
+        );
+        given = given + light;
+    }
+    let mut own = covered * (opacity * ambient * skin.color + given);
     if frame.plan.unlit && frame.encoder.tone_map == ToneMap::Neutral {
         own = unmapped(simd, frame, materials, own);
     }
-    let background = weight * V3::splat(simd, frame.scene.render.background);
-    let own = V3::select(active, own, background);
+    if !active.all_true() {
+        own = V3::select(active, own, weight * sky::beyond(simd, frame, level, rays, at));
+    }
     colors.deposit(simd, level == 1, samples, present::<S>(rays, at), own);
 
     let place = [surfaces.point.position, direction, view.facing];

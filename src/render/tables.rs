@@ -2,6 +2,7 @@
 
 use crate::geometry::{Geometry, Home, Opaque, OpaqueList, PrimitiveIndex, SharedMesh, VertexAttributes, VertexExtras};
 use crate::scene::material::{Lookup, Model, Relief, Scaled};
+use crate::scene::sky::SkyLight;
 use crate::scene::{Material, Scene, Texture};
 use glam::{Vec3, Vec4};
 
@@ -225,6 +226,8 @@ pub struct Tables {
     pub transparent_bodies: Vec<u32>,
     /// Whether anything flat mirrors.
     pub flat_mirrors: bool,
+    /// The light of the sky, if there is one.
+    pub sky: Option<SkyLight>,
     /// What the colours of unlit materials are multiplied by.
     unlit_gain: f32,
 }
@@ -260,6 +263,7 @@ impl Tables {
             opaque,
             transparent_bodies,
             flat_mirrors,
+            sky: scene.environment.as_ref().map(SkyLight::new),
             unlit_gain: 1.0,
         }
     }

@@ -1,5 +1,6 @@
 //! What surrounds a scene: a sky that lights it from everywhere and is seen where nothing is in the way.
 
+use super::sky::SkyImage;
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -43,18 +44,4 @@ pub struct Gradient {
     pub horizon: Vec3,
     /// Straight down.
     pub ground: Vec3,
-}
-
-/// An equirectangular picture: its middle is seen along -Z, its left and right edges along +Z, its top row straight up; what is
-/// right of its middle is seen along +X.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SkyImage {
-    /// Name of its file, for people.
-    pub name: String,
-    /// In texels, at least 1.
-    pub width: u32,
-    /// In texels, at least 1.
-    pub height: u32,
-    /// Linear radiance, finite and at least 0, row by row from the top.
-    pub texels: Box<[[f32; 3]]>,
 }

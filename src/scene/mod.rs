@@ -22,6 +22,7 @@ pub mod object;
 pub mod path;
 pub mod pick;
 pub mod progress;
+pub mod sky;
 pub mod texels;
 pub mod texture;
 

@@ -1,6 +1,7 @@
 //! How bright a scene is to somebody who starts his walk: what automatic exposure goes by.
 
 use super::probe::{Probe, around};
+use crate::geometry::PrimitiveIndex;
 use crate::scene::light::{Falloff, LightKind};
 use crate::scene::{Camera, Light};
 use glam::Vec3;
@@ -25,12 +26,7 @@ const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 /// al., SIGGRAPH 2002), raised where much is far brighter. `None` where nothing is lit, or finding out takes
 /// more than the probe may. An empty list of lights is a headlight.
 pub fn usual_irradiance(probe: &mut Probe, camera: &Camera, lights: &[Light]) -> Option<f64> {
-    let headlight = [Light {
-        name: None,
-        kind: LightKind::Point { position: camera.eye },
-        color: Vec3::ONE,
-        falloff: Falloff::None,
-    }];
+    let headlight = [at_eye(camera)];
     let lights = if lights.is_empty() { &headlight[..] } else { lights };
     let lit = irradiances(probe, camera, &view(camera), lights);
     let mut lit = if lit.is_empty() { irradiances(probe, camera, &around(AROUND), lights) } else { lit };
@@ -41,6 +37,26 @@ pub fn usual_irradiance(probe: &mut Probe, camera: &Camera, lights: &[Light]) ->
     lit.sort_unstable_by(f64::total_cmp);
     let bright = lit[((1.0 - BRIGHTEST) * (lit.len() - 1) as f64) as usize];
     Some(mean.max(bright / HIGHLIGHT))
+}
+
+/// A point of what is seen.
+pub struct Point {
+    pub primitive: PrimitiveIndex,
+    /// Unit geometric normal on the viewer's side.
+    pub normal: Vec3,
+    /// By all lights that reach it.
+    pub irradiance: f64,
+}
+
+/// What `camera` sees, lit or not. An empty list of lights is a headlight.
+pub fn points(probe: &mut Probe, camera: &Camera, lights: &[Light]) -> Vec<Point> {
+    let headlight = [at_eye(camera)];
+    seen(probe, camera, &view(camera), if lights.is_empty() { &headlight } else { lights })
+}
+
+fn at_eye(camera: &Camera) -> Light {
+    let kind = LightKind::Point { position: camera.eye };
+    Light { name: None, kind, color: Vec3::ONE, falloff: Falloff::None }
 }
 
 /// Directions through the points of a picture.
@@ -54,20 +70,25 @@ pub(super) fn view(camera: &Camera) -> Vec<Vec3> {
 
 /// The irradiances, all above 0, of what lies in the given directions from the eye.
 fn irradiances(probe: &mut Probe, camera: &Camera, directions: &[Vec3], lights: &[Light]) -> Vec<f64> {
+    let irradiances = seen(probe, camera, directions, lights).into_iter().map(|point| point.irradiance);
+    irradiances.filter(|irradiance| *irradiance > 0.0).collect()
+}
+
+/// What lies in the given directions from the eye.
+fn seen(probe: &mut Probe, camera: &Camera, directions: &[Vec3], lights: &[Light]) -> Vec<Point> {
     let step = (directions.len() * lights.len()).div_ceil(SHADOW_RAYS).max(1);
     let directions: Vec<Vec3> = directions.iter().step_by(step).copied().collect();
     let met = probe.see(camera.eye, &directions, camera.near);
-    let mut lit = Vec::with_capacity(directions.len());
+    let mut points = Vec::with_capacity(directions.len());
     for (met, direction) in met.into_iter().zip(directions) {
         let Some(met) = met else { continue };
         let point = camera.eye + direction * met.distance;
         let normal = if met.normal.dot(direction) > 0.0 { -met.normal } else { met.normal };
         let irradiance = irradiance(probe, point, normal, lights);
-        if irradiance > 0.0 && irradiance.is_finite() {
-            lit.push(irradiance);
-        }
+        let irradiance = if irradiance.is_finite() { irradiance } else { 0.0 };
+        points.push(Point { primitive: met.primitive, normal, irradiance });
     }
-    lit
+    points
 }
 
 /// The irradiance of a point by all lights that reach it.

@@ -9,6 +9,7 @@ mod framing;
 mod holes;
 mod image;
 mod interior;
+mod lighting;
 mod mapping;
 mod model;
 mod object;
@@ -29,17 +30,20 @@ use super::desc::{
 };
 use super::error::Warning;
 use super::files::{FileError, Files};
-use super::format::LoadOptions;
+use super::format::{Format, LoadOptions};
 use super::limits::{Limits, exceeded};
-use super::material::{Alpha, Encoding, Model};
+use super::material::{Alpha, Encoding};
 use super::texture::ImageTexture;
-use super::{Light, Material, NamedCamera, Object, Progress, RenderDefaults, Scene, Texture, next_generation};
+use super::{
+    Environment, Light, Material, NamedCamera, Object, Progress, RenderDefaults, Scene, Texture, next_generation,
+};
 use crate::geometry::{Aabb, Contacts, Geometry, Part};
 use crate::settings::Exposure;
 use allowance::Allowance;
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DAffine3, DVec3};
 use holes::HoleMaps;
 use image::{ImageStore, Wanted};
+use lighting::{Lighting, Lit};
 use model::{Contents, Models};
 use origin::far_origin;
 use parts::TOO_MANY_INDICES;
@@ -49,7 +53,6 @@ pub(super) use probe::Probe;
 use sharing::{Census, Sharing};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
-use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -93,6 +96,10 @@ pub struct SceneBuilder {
     lights: Vec<Light>,
     cameras: Vec<NamedCamera>,
     render: RenderDefaults,
+    /// The sky around it, as the file or the user has it.
+    environment: Option<Environment>,
+    /// Whether a studio lights it.
+    studio: bool,
     warnings: Vec<Warning>,
 }
 
@@ -101,12 +108,12 @@ type Names = HashMap<String, u32>;
 
 impl SceneBuilder {
     /// An empty scene of the file `scene`, which is in `format`; it may read `files`.
-    pub fn new(scene: &Path, format: &'static str, files: Files, options: &LoadOptions) -> Self {
+    pub fn new(scene: &Path, format: &'static Format, files: Files, options: &LoadOptions) -> Self {
         let name = scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let path = files.locate(&name).unwrap_or_else(|_| scene.to_owned());
         Self {
             name,
-            format,
+            format: format.name,
             models: Models::of(path, scene),
             progress: files.progress().clone(),
             images: ImageStore::new(files, &options.limits),
@@ -124,6 +131,8 @@ impl SceneBuilder {
             lights: Vec::new(),
             cameras: Vec::new(),
             render: RenderDefaults::default(),
+            environment: None,
+            studio: !format.says_how_it_is_lit,
             warnings: Vec::new(),
         }
     }
@@ -316,11 +325,6 @@ impl SceneBuilder {
 
     /// The finished scene; `None` where it was cancelled.
     pub fn finish(mut self) -> Option<Scene> {
-        let headlight = self.lights.is_empty();
-        if headlight {
-            self.render.ambient = Vec3::splat(AMBIENT_SHARE);
-            self.materials.iter_mut().filter(|material| material.is_stand_in).for_each(Material::take_metal);
-        }
         if self.materials.is_empty() {
             self.materials.push(Material::default_phong());
         }
@@ -347,7 +351,26 @@ impl SceneBuilder {
             on_foot = stands;
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
         }
-        let auto_exposure = self.expose(&mut probe);
+        let mut lit = Lit {
+            probe,
+            camera: self.cameras[0].camera,
+            objects: &self.objects,
+            materials: &self.materials,
+            textures: &self.textures,
+            is_exposed: self.render.exposure == Exposure::Auto,
+        };
+        let lights = std::mem::take(&mut self.lights);
+        let Lighting { lights, headlight, ambient, environment, stops } = match self.studio {
+            true => lit.in_studio(lights),
+            false => lit.as_it_is(lights, self.environment),
+        };
+        self.render.ambient = ambient.unwrap_or(self.render.ambient);
+        if self.studio {
+            self.render.exposure = Exposure::Auto;
+        }
+        if headlight {
+            self.materials.iter_mut().filter(|material| material.is_stand_in).for_each(Material::take_metal);
+        }
         Some(Scene {
             name: self.name,
             format: self.format,
@@ -359,30 +382,15 @@ impl SceneBuilder {
             origin: self.origin,
             materials: self.materials,
             textures: self.textures,
-            lights: self.lights,
+            lights,
             headlight,
             cameras: self.cameras,
             on_foot,
-            environment: None,
+            environment,
             render: self.render,
-            auto_exposure,
+            auto_exposure: stops,
             warnings: self.warnings,
         })
-    }
-
-    /// The stops that show white at half of full brightness where the scene is as bright as usual.
-    ///
-    /// Where the scene asks to be exposed so, its lights may be in any unit: its ambient light is put in proportion to
-    /// them.
-    fn expose(&mut self, probe: &mut Probe) -> f32 {
-        let irradiance = brightness::usual_irradiance(probe, &self.cameras[0].camera, &self.lights).unwrap_or(1.0);
-        let physical = self.materials.iter().any(|m| matches!(m.model, Model::MetallicRoughness { .. }));
-        let white = if physical { irradiance / PI } else { irradiance };
-        let stops = libm::log2(WHITE / white).clamp(-MOST_STOPS, MOST_STOPS);
-        if self.render.exposure == Exposure::Auto && !self.lights.is_empty() {
-            self.render.ambient = Vec3::splat(AMBIENT_SHARE * irradiance as f32);
-        }
-        stops as f32
     }
 }
 

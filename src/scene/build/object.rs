@@ -287,9 +287,9 @@ fn add_mesh(mesh: &MeshDesc, placement: &Placement, cut: Option<&Cut>, parts: &m
 mod tests {
     use super::*;
     use crate::geometry::Part;
-    use crate::scene::LoadOptions;
     use crate::scene::desc::SceneDesc;
     use crate::scene::files::Files;
+    use crate::scene::{FORMATS, LoadOptions};
     use glam::{DAffine3, DVec2};
     use std::path::Path;
 
@@ -297,7 +297,7 @@ mod tests {
     fn parts_of(shape: ShapeDesc, transform: Option<DAffine3>) -> Vec<Part> {
         let options = LoadOptions::default();
         let limits = &options.limits;
-        let mut builder = SceneBuilder::new(Path::new("test"), "none", Files::embedded(&[], limits), &options);
+        let mut builder = SceneBuilder::new(Path::new("test"), &FORMATS[0], Files::embedded(&[], limits), &options);
         let object = ObjectDesc { at: At(0), kind: "shape", name: None, material: None, transform, shape };
         let scene = SceneDesc { objects: vec![object], ..SceneDesc::default() };
         builder.add(scene, &mut Warnings::default()).unwrap();

@@ -15,6 +15,8 @@ pub struct Met {
     /// Unit geometric normal, on the outer side of what has one; where the primitive is not flat, against the ray that
     /// comes from outside and along the one that comes from inside.
     pub normal: Vec3,
+    /// Which primitive it is of.
+    pub primitive: PrimitiveIndex,
 }
 
 /// A way to ask for closest hits. The answers are the same at every SIMD level.
@@ -33,6 +35,11 @@ impl<'a> Probe<'a> {
     /// A probe that may look at no more of `geometry` than is allowed.
     pub fn within(geometry: &'a Geometry, allowance: Allowance<'a>) -> Self {
         Self { geometry, stack: Stack::default(), allowance }
+    }
+
+    /// What it looks at.
+    pub fn geometry(&self) -> &'a Geometry {
+        self.geometry
     }
 
     /// Whether it has looked at all that it may: the last answers mean nothing.
@@ -64,7 +71,7 @@ impl<'a> Probe<'a> {
                 let from_inside = (origin + direction * distance - middle).dot(direction) > 0.0;
                 if from_inside { direction } else { -direction }
             });
-            Some(Met { distance, normal })
+            Some(Met { distance, normal, primitive })
         };
         hits.iter().zip(directions).map(met).collect()
     }
@@ -161,7 +168,10 @@ mod tests {
             let mut probe = Probe::new(&geometry);
             let origin = Vec3::new(0.2, 0.2, 2.0);
             let directions = [Vec3::NEG_Z, Vec3::Z, Vec3::X];
-            assert_eq!(probe.look(origin, &directions, 0.0), [Some(Met { distance: 2.0, normal }), None, None]);
+            assert_eq!(
+                probe.look(origin, &directions, 0.0),
+                [Some(Met { distance: 2.0, normal, primitive: 0 }), None, None]
+            );
         }
     }
 
@@ -173,7 +183,7 @@ mod tests {
         let mut probe = Probe::new(&geometry);
         for (z, is_seen) in [(2.0, true), (-2.0, false)] {
             let (origin, direction) = (Vec3::new(0.2, 0.2, z), Vec3::NEG_Z * z.signum());
-            let met = Some(Met { distance: 2.0, normal: Vec3::Z });
+            let met = Some(Met { distance: 2.0, normal: Vec3::Z, primitive: 0 });
             assert_eq!(probe.look_along(origin, direction, 0.0), met);
             assert_eq!(probe.see(origin, &[direction], 0.0), [met.filter(|_| is_seen)]);
             assert_eq!(probe.seen(origin, direction, 0.0).1 == 0, is_seen);

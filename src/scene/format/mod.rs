@@ -49,6 +49,8 @@ pub struct Format {
     pub name: &'static str,
     /// How names of its files end, without the dot, in lower case.
     pub extensions: &'static [&'static str],
+    /// Whether its files say how they are lit: without lights and sky, the viewer need not find a light for them.
+    pub says_how_it_is_lit: bool,
     /// Reads a file of the format into a scene under construction.
     pub read: fn(&Input, &mut SceneBuilder) -> Result<(), SceneError>,
 }
@@ -67,11 +69,11 @@ impl Format {
 
 /// Every format.
 pub const FORMATS: &[Format] = &[
-    Format { name: "JSON", extensions: &["json"], read: json::read },
-    Format { name: "XML", extensions: &["xml"], read: xml::read },
-    Format { name: "NFF", extensions: &["nff"], read: nff::read },
-    Format { name: "OBJ", extensions: &["obj", "obj.zst"], read: obj::read },
-    Format { name: "glTF", extensions: &["gltf", "glb"], read: gltf::read },
+    Format { name: "JSON", extensions: &["json"], says_how_it_is_lit: true, read: json::read },
+    Format { name: "XML", extensions: &["xml"], says_how_it_is_lit: true, read: xml::read },
+    Format { name: "NFF", extensions: &["nff"], says_how_it_is_lit: true, read: nff::read },
+    Format { name: "OBJ", extensions: &["obj", "obj.zst"], says_how_it_is_lit: false, read: obj::read },
+    Format { name: "glTF", extensions: &["gltf", "glb"], says_how_it_is_lit: false, read: gltf::read },
 ];
 
 /// Loads a scene from a file; its format is known by its extension.
@@ -135,7 +137,7 @@ fn read(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, Sce
 
 fn build(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, SceneError> {
     let format = format_of(input.path)?;
-    let mut builder = SceneBuilder::new(input.path, format.name, files, options);
+    let mut builder = SceneBuilder::new(input.path, format, files, options);
     (format.read)(input, &mut builder)?;
     builder.finish().ok_or_else(|| SceneError::Cancelled { place: whole(input.path) })
 }

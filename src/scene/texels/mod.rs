@@ -1,5 +1,6 @@
 //! The texels of a picture, laid out for filtered lookups by packets.
 
+mod mean;
 mod mip;
 mod opacity;
 
