@@ -5,6 +5,14 @@
 
 mod program;
 
-fn main() -> anyhow::Result<()> {
-    program::run(&program::command().get_matches())
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match program::run(&program::command().get_matches()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            program::note(&format!("error: {error:#}"));
+            ExitCode::FAILURE
+        }
+    }
 }

@@ -114,6 +114,10 @@ fn figures_are_those_of_what_is_seen() {
     assert_eq!((seen.ok, &seen.faults[..]), (false, &["black", "flat"][..]));
     assert_eq!(figures(&scene(0.0), (48, 32)).faults, ["black", "dark", "flat"]);
     assert_eq!(figures(&scene(1.0), (48, 32)).faults, ["black", "bright", "flat"]);
+    assert_eq!(figures(r#"{ "version": 1 }"#, (48, 32)).faults, ["empty"]);
+    let away = scene(1.0).replace("[0, 0, 0], \"fov", "[0, 0, 9], \"fov");
+    let unseen = figures(&away, (48, 32));
+    assert_eq!((unseen.width, unseen.height, &unseen.faults[..]), (0.0, 0.0, &["unseen"][..]));
 }
 
 #[test]

@@ -39,7 +39,7 @@ pub struct Entry {
 pub struct Figures {
     /// Whether all figures are within their bounds.
     pub ok: bool,
-    /// Those that are not.
+    /// Those that are not; or `empty` for a scene without an object, `unseen` where none is in the picture.
     pub faults: Vec<&'static str>,
     /// Share of pixels of which every channel is dark.
     pub dark: f64,
@@ -92,12 +92,16 @@ impl Figures {
             on_foot: scene.on_foot,
             eye_height: floor.flatten().map(|floor| floor.distance),
         };
-        figures.faults = figures.faults();
+        figures.faults = match (scene.objects.is_empty(), count > 0.0) {
+            (true, _) => vec!["empty"],
+            (false, false) => vec!["unseen"],
+            (false, true) => figures.faults(),
+        };
         figures.ok = figures.faults.is_empty();
         figures
     }
 
-    /// What is out of bounds.
+    /// What of a subject that is seen is out of bounds.
     fn faults(&self) -> Vec<&'static str> {
         let checks = [
             (self.dark > MOST_DARK, "black"),

@@ -60,8 +60,8 @@ fn size(text: &str) -> Result<(u32, u32), String> {
     sides.ok_or_else(|| "expected width x height in pixels, each from 1 to 4096, such as 320x180".to_owned())
 }
 
-/// Tells on stderr how far the work has come.
-fn note(text: &str) {
+/// Prints a line on stderr.
+pub fn note(text: &str) {
     // Whoever closed stderr does not want to know.
     let _ = writeln!(io::stderr(), "{text}");
 }
