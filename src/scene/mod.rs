@@ -118,6 +118,8 @@ pub struct Scene {
     pub headlight: bool,
     /// Cameras of the file; the first is where a walk starts. Never empty: without one in the file, a view of the bounds.
     pub cameras: Vec<NamedCamera>,
+    /// The file has no camera: the only one was made to show its bounds, or to stand in it.
+    pub framed: bool,
     /// Whether the first camera is that of somebody who stands on a floor: a walk starts on foot.
     pub on_foot: bool,
     /// The sky around it, if it has one.

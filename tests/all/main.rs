@@ -7,6 +7,7 @@ mod bench;
 mod blit;
 mod cli;
 mod command_line;
+mod contact_sheet;
 mod contacts;
 mod corpus;
 mod crowds;

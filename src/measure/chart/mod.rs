@@ -19,12 +19,16 @@ mod walk;
 
 pub use number::short;
 pub use palette::{DARK, STYLE};
-pub use svg::escaped;
+pub use png::rasterised;
+pub use svg::{escaped, text_width, wrapped};
 pub use tradeoff::told;
 
 use super::records::{self, Part, Records, RecordsError, Row};
 use crate::picture::{PendingFile, PictureError};
 use std::path::Path;
+
+/// Pixels a unit of a chart.
+const SCALE: f32 = 1.5;
 
 /// One chart.
 #[derive(Clone, Debug)]
@@ -65,7 +69,7 @@ impl Chart {
         let file = PendingFile::create(&folder.join(format!("{}.svg", self.name)))?;
         file.commit(|sink| Ok(sink.write_all(document.as_bytes())?))?;
         let named = |message| PictureError::Encode(format!("{}: {message}", self.name));
-        let picture = png::rasterised(&document).map_err(named)?;
+        let picture = rasterised(&document, SCALE).map_err(named)?;
         let path = folder.join(format!("{}.png", self.name));
         let format = crate::picture::Format::of(&path)?;
         Ok(PendingFile::create(&path)?.commit(|sink| format.write_eight_bit(&picture, sink))?)

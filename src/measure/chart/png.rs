@@ -1,11 +1,8 @@
-//! Charts as pictures.
+//! SVG as pictures: charts, and texts for other pictures.
 
 use crate::picture::EightBit;
 use resvg::{tiny_skia, usvg};
 use std::sync::{Arc, LazyLock};
-
-/// Pixels a unit of the chart.
-const SCALE: f32 = 1.5;
 
 /// The one font that pictures are written in, whatever the system has: the one of the window.
 static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
@@ -18,17 +15,17 @@ static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
     Arc::new(fonts)
 });
 
-/// The picture of an SVG.
+/// The picture of an SVG on white paper, `scale` pixels a unit.
 ///
 /// # Errors
 /// What is wrong with the SVG, which none of ours should cause.
-pub fn rasterised(svg: &str) -> Result<EightBit, String> {
+pub fn rasterised(svg: &str, scale: f32) -> Result<EightBit, String> {
     let options = usvg::Options { fontdb: Arc::clone(&FONTS), ..usvg::Options::default() };
     let tree = usvg::Tree::from_str(svg, &options).map_err(|error| error.to_string())?;
-    let size = tree.size().to_int_size().scale_by(SCALE).ok_or("the chart has no size")?;
-    let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height()).ok_or("the chart has no size")?;
+    let size = tree.size().to_int_size().scale_by(scale).ok_or("the picture has no size")?;
+    let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height()).ok_or("the picture has no size")?;
     pixels.fill(tiny_skia::Color::WHITE);
-    resvg::render(&tree, tiny_skia::Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
+    resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixels.as_mut());
     // On white paper nothing is transparent.
     let rgb = pixels.pixels().iter().flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect();
     Ok(EightBit { width: size.width(), height: size.height(), rgb })

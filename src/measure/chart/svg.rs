@@ -48,7 +48,7 @@ pub fn text_width(text: &str, font_size: f64) -> f64 {
 }
 
 /// The lines of a text that is broken between words where it would get wider than `width`.
-fn wrapped(text: &str, font_size: f64, width: f64) -> Vec<String> {
+pub fn wrapped(text: &str, font_size: f64, width: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
         let line = lines.len() - 1;

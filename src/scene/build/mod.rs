@@ -345,8 +345,9 @@ impl SceneBuilder {
         let progress = self.progress.clone();
         let wanted = || !progress.is_cancelled();
         let mut probe = Probe::within(&geometry, Allowance::new(STEPS_AROUND, &wanted));
+        let framed = self.cameras.is_empty();
         let mut on_foot = false;
-        if self.cameras.is_empty() {
+        if framed {
             let (camera, stands) = framing::start(&mut probe, finite_bounds(&self.objects), &self.render);
             on_foot = stands;
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
@@ -385,6 +386,7 @@ impl SceneBuilder {
             lights,
             headlight,
             cameras: self.cameras,
+            framed,
             on_foot,
             environment,
             render: self.render,
