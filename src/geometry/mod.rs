@@ -43,7 +43,7 @@ pub use traverse::{Search, SphereTerms, Stack};
 pub use visitor::{AnyHit, ClosestHit, NextCrossing, Visitor};
 
 use bvh::{Bvh, Child, LeafMembers};
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use primitive::{Cone, Cutout, Disk, Kernel, Plane, Sphere, Triangle, for_each_primitive};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -57,6 +57,19 @@ pub struct Slot {
     pub block: u32,
     /// Place within the block.
     pub place: u8,
+}
+
+impl Geometry {
+    /// What the corners of a triangle multiply its colour and opacity by, where they carry that.
+    pub fn corner_colors(&self, primitive: PrimitiveIndex) -> Option<[Vec4; 3]> {
+        match self.instances.find(primitive) {
+            Home::Own(own) => {
+                let place = self.extras.binary_search_by_key(&own, |(place, _)| *place).ok()?;
+                Some(self.extras[place].1.colors)
+            }
+            Home::Shared(triangle) => self.instances.extras(triangle).map(|extras| extras.colors),
+        }
+    }
 }
 
 impl Slot {

@@ -5,7 +5,7 @@ use super::probe::{Probe, around};
 use super::{AMBIENT_SHARE, MOST_STOPS, WHITE};
 use crate::scene::environment::{Environment, Sky};
 use crate::scene::light::{Falloff, LightKind};
-use crate::scene::material::Model;
+use crate::scene::material::{Lookup, Model};
 use crate::scene::sky::{SkyLight, luminance};
 use crate::scene::texture::linear_to_srgb;
 use crate::scene::{Camera, Light, Material, Object, Texture};
@@ -17,13 +17,15 @@ const LOOKS: usize = 128;
 const ROOFED: f32 = 0.8;
 /// Towards the key light, for somebody who looks along -Z: from the left above, somewhat behind them.
 const TOWARDS_KEY: Vec3 = Vec3::new(-0.5, 0.85, 0.62);
+/// How far away it is, as a share of how far away what is seen from outside is: so near, it lights flat things unevenly.
+const KEY_DISTANCE: f32 = 0.85;
 /// What the key light gives a white surface that faces it, as a share of full brightness; the studio gives it the rest.
 const KEY: f32 = 0.62;
 /// What is lit by the key light and the studio is as bright as its colour is.
 const KEY_STOPS: f64 = 0.0;
 /// Mean brightness of what is seen, as displays show it, that exposure aims at, and how far it may go for it.
-const SHOWN: [f64; 2] = [0.33, 0.62];
-const MOST_ADJUSTMENT: f64 = 4.0;
+const SHOWN: [f64; 2] = [0.35, 0.62];
+const MOST_ADJUSTMENT: f64 = 5.0;
 
 /// How a scene is lit.
 pub struct Lighting {
@@ -45,6 +47,8 @@ pub struct Lit<'a> {
     pub objects: &'a [Object],
     pub materials: &'a [Material],
     pub textures: &'a [Texture],
+    /// The camera looks at the middle of all there is, from outside of it.
+    pub is_framed: bool,
     /// The file leaves exposure to the viewer: its lights may be in any unit.
     pub is_exposed: bool,
 }
@@ -79,9 +83,16 @@ impl Lit<'_> {
         let full = luminance(SkyLight::new(&studio(1.0)).irradiance.over_pi(towards_key));
         let is_key_lit = lights.is_empty() && !self.is_roofed();
         if is_key_lit {
-            let kind = LightKind::Directional { direction: -towards_key };
-            let color = Vec3::splat(KEY * if self.is_physical() { std::f32::consts::PI } else { 1.0 });
-            let key = Light { name: Some("key".to_owned()), kind, color, falloff: Falloff::None };
+            let white = KEY * if self.is_physical() { std::f32::consts::PI } else { 1.0 };
+            let Camera { eye, look_at, .. } = self.camera;
+            let distance = eye.distance(look_at) * KEY_DISTANCE;
+            let position = look_at + towards_key * distance;
+            let at_position = white * distance * distance;
+            let (kind, strength, falloff) = match self.is_framed && at_position.is_normal() && position.is_finite() {
+                true => (LightKind::Point { position }, at_position, Falloff::InverseSquare),
+                false => (LightKind::Directional { direction: -towards_key }, white, Falloff::None),
+            };
+            let key = Light { name: Some("key".to_owned()), kind, color: Vec3::splat(strength), falloff };
             let environment = studio((1.0 - KEY) / full);
             let stops = self.adjusted(KEY_STOPS, std::slice::from_ref(&key), &environment);
             return Lighting {
@@ -138,7 +149,7 @@ impl Lit<'_> {
         let points = brightness::points(&mut self.probe, &self.camera, lights);
         let sky = SkyLight::new(environment).irradiance;
         let physical = self.is_physical();
-        let colors: Vec<Vec3> = self.materials.iter().map(|material| self.color_of(material)).collect();
+        let colors: Vec<Colors> = self.materials.iter().map(|material| self.colors_of(material)).collect();
         let light_of = |point: &Point| {
             let geometry = self.probe.geometry();
             let object = geometry.id(point.primitive)?.object;
@@ -147,9 +158,13 @@ impl Lit<'_> {
             if material.unlit || material.is_transparent() {
                 return None;
             }
-            let direct = point.irradiance / if physical { PI } else { 1.0 };
+            let Colors { color, metal } = colors[number];
+            let corners = geometry.corner_colors(point.primitive);
+            let own = corners.map_or(Vec3::ONE, |[a, b, c]| (a + b + c).truncate() / 3.0);
+            // Metals show little but what they mirror.
+            let direct = point.irradiance / if physical { PI } else { 1.0 } * f64::from(1.0 - metal);
             let arriving = Vec3::splat(direct as f32) + sky.over_pi(point.normal);
-            Some(colors[number] * arriving + material.emission.factor)
+            Some(color * own * arriving + material.emission.factor)
         };
         let light: Vec<Vec3> = points.iter().filter_map(light_of).collect();
         if light.is_empty() || self.probe.is_spent() {
@@ -159,7 +174,9 @@ impl Lit<'_> {
             let gain = libm::exp2(stops) as f32;
             let display = |light: &Vec3| {
                 let encoded = (*light * gain).to_array().map(|channel| f32::from(linear_to_srgb(channel)) / 255.0);
-                f64::from(luminance(Vec3::from_array(encoded)))
+                // What is of one pure colour cannot be as bright as grey is: there the colour itself counts, too.
+                let encoded = Vec3::from_array(encoded);
+                f64::from(luminance(encoded) + encoded.max_element()) / 2.0
             };
             light.iter().map(display).sum::<f64>() / light.len() as f64
         };
@@ -179,20 +196,27 @@ impl Lit<'_> {
         ((low + high) / 2.0).clamp(-MOST_STOPS, MOST_STOPS)
     }
 
-    /// The colour of a material on the whole.
-    fn color_of(&self, material: &Material) -> Vec3 {
-        let texture = material.color.texture.map(|lookup| &self.textures[lookup.texture as usize]);
-        let mean = match texture {
-            Some(Texture::Image(image)) => image.texels.mean_color(),
-            Some(Texture::Checker { colors: [a, b], .. }) => (*a + *b) / 2.0,
-            None => Vec3::ONE,
+    /// What a material is like on the whole.
+    fn colors_of(&self, material: &Material) -> Colors {
+        let mean = |lookup: Lookup| match &self.textures[lookup.texture as usize] {
+            Texture::Image(image) => image.texels.mean_color(),
+            Texture::Checker { colors: [a, b], .. } => (*a + *b) / 2.0,
         };
-        let diffuse = match material.model {
-            Model::Phong { diffuse, .. } => diffuse,
-            Model::MetallicRoughness { .. } => Vec3::ONE,
-        };
-        material.color.factor * mean * diffuse
+        let color = material.color.factor * material.color.texture.map_or(Vec3::ONE, mean);
+        match material.model {
+            Model::Phong { diffuse, .. } => Colors { color: color * diffuse, metal: 0.0 },
+            Model::MetallicRoughness { metallic, .. } => {
+                Colors { color, metal: metallic * material.metallic_roughness.map_or(1.0, |map| mean(map).z) }
+            }
+        }
     }
+}
+
+/// What a material is like on the whole.
+struct Colors {
+    color: Vec3,
+    /// Share of metal.
+    metal: f32,
 }
 
 #[cfg(test)]
@@ -229,6 +253,7 @@ mod tests {
             objects: &[object.clone(), object],
             materials: &[material],
             textures: &[],
+            is_framed: false,
             is_exposed: true,
         };
         let lighting = lit.in_studio(lights);

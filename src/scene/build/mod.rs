@@ -358,6 +358,7 @@ impl SceneBuilder {
             objects: &self.objects,
             materials: &self.materials,
             textures: &self.textures,
+            is_framed: framed && !on_foot,
             is_exposed: self.render.exposure == Exposure::Auto,
         };
         let lights = std::mem::take(&mut self.lights);
