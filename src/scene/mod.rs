@@ -25,10 +25,11 @@ pub mod progress;
 pub mod texels;
 pub mod texture;
 
-pub use build::Instancing;
+pub use build::{Instancing, read_sky};
 pub use builtin::{builtin, nothing};
 pub use camera::{Camera, FileCamera};
-pub use environment::{Environment, Sky};
+
+pub use environment::{Environment, EnvironmentChoice, Sky};
 pub use error::{SceneError, Warning};
 pub use format::{FORMATS, Format, LoadOptions, load, load_embedded, load_text, read_camera};
 pub use light::Light;
@@ -154,6 +155,11 @@ impl Scene {
             warnings: self.warnings.clone(),
             ..*self
         }
+    }
+
+    /// The same place with another environment around it, or none; lights and exposure stay.
+    pub fn with_environment(&self, environment: Option<Environment>) -> Self {
+        Self { environment, headlight: self.headlight, ..self.with_lights(self.lights.clone()) }
     }
 
     /// What the colour of unlit surfaces is to be multiplied by, so that under `exposure` they are seen as the file has

@@ -18,15 +18,19 @@ mod placeholder;
 mod placement;
 pub mod probe;
 mod sharing;
+mod sky;
+mod surroundings;
 
 pub use bounds::finite_bounds;
 pub use sharing::Instancing;
+pub use surroundings::read_sky;
 
 use super::desc::map::shortened;
 use super::desc::problem::{At, Outcome, Problem, Warnings};
 use super::desc::{
     CameraDesc, ImageSource, MaterialDesc, NameRef, ObjectDesc, SceneDesc, TextureDesc, TextureKind, hint,
 };
+use super::environment::{Environment, EnvironmentChoice};
 use super::error::Warning;
 use super::files::{FileError, Files};
 use super::format::LoadOptions;
@@ -93,6 +97,9 @@ pub struct SceneBuilder {
     lights: Vec<Light>,
     cameras: Vec<NamedCamera>,
     render: RenderDefaults,
+    /// What surrounds the scene, by its file or by what was asked for.
+    environment: Option<Environment>,
+    environment_choice: EnvironmentChoice,
     warnings: Vec<Warning>,
 }
 
@@ -124,6 +131,8 @@ impl SceneBuilder {
             lights: Vec::new(),
             cameras: Vec::new(),
             render: RenderDefaults::default(),
+            environment: None,
+            environment_choice: EnvironmentChoice::Scene,
             warnings: Vec::new(),
         }
     }
@@ -165,13 +174,14 @@ impl SceneBuilder {
     /// A name that nothing bears, a file that cannot be read, a transform that does not fit its shape,
     /// or a limit that is exceeded.
     pub fn add(&mut self, scene: SceneDesc, warnings: &mut Warnings) -> Outcome<()> {
-        let SceneDesc { render, cameras, textures, materials, lights, objects } = scene;
+        let SceneDesc { render, environment, cameras, textures, materials, lights, objects } = scene;
         let materials = self.add_materials(materials, &textures, warnings)?;
         let contents = Contents { objects, lights, materials };
         if self.models.is_reading() {
             return self.place_model(contents, warnings);
         }
         self.render = render;
+        self.surround_as_described(environment, warnings)?;
         self.progress.begin("placing objects", 0);
         let before = (self.materials.len(), self.textures.len(), self.warnings.len());
         let mut odd = Warnings::default();
@@ -363,7 +373,7 @@ impl SceneBuilder {
             headlight,
             cameras: self.cameras,
             on_foot,
-            environment: None,
+            environment: self.environment,
             render: self.render,
             auto_exposure,
             warnings: self.warnings,
