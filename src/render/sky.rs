@@ -9,7 +9,7 @@ use super::skin::Skin;
 use super::tables::{MIRROR_ROUGHNESS, Row};
 use crate::math::V3;
 use crate::math::arctangent::atan2;
-use crate::scene::sky::{GlossyLevel, Irradiance, LEAST_ROUGHNESS, Lobe, Radiance, SkyImage, SkyLight, SkyMap, Smooth};
+use crate::scene::sky::{Blurred, GlossyLevel, Irradiance, LEAST_ROUGHNESS, Lobe, Radiance, SkyLight, SkyMap, Smooth};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use std::f32::consts::{FRAC_1_PI, TAU};
@@ -65,7 +65,7 @@ fn radiance<S: Simd>(simd: S, sky: &SkyLight, direction: V3<S::f32s>) -> V3<S::f
             let found = gathered(
                 simd,
                 #[inline(always)]
-                |lane| interpolated(&image.sharp, place.lane(lane)),
+                |lane| interpolated(image.map(), place.lane(lane)),
             );
             found.scale(S::f32s::splat(simd, *intensity))
         }
@@ -96,7 +96,7 @@ fn glossy<S: Simd>(simd: S, sky: &SkyLight, direction: V3<S::f32s>, roughness: S
             let found = gathered(
                 simd,
                 #[inline(always)]
-                |lane| between_levels(image, place.lane(lane), roughness[lane]),
+                |lane| between_levels(image.blurred(), place.lane(lane), roughness[lane]),
             );
             found.scale(S::f32s::splat(simd, *intensity))
         }
@@ -245,7 +245,7 @@ fn gathered<S: Simd>(simd: S, found: impl Fn(usize) -> [f32; 3]) -> V3<S::f32s> 
 }
 
 /// The mean of the four texels around a place, by their distance. Left and right edge meet.
-fn interpolated(map: &SkyMap, [across, down]: [f32; 2]) -> [f32; 3] {
+fn interpolated(map: SkyMap<'_>, [across, down]: [f32; 2]) -> [f32; 3] {
     let (x, y) = (across * map.width as f32 - 0.5, (down * map.height as f32 - 0.5).max(0.0));
     // What is not a number is 0.
     let left = x.floor();
@@ -263,11 +263,11 @@ fn interpolated(map: &SkyMap, [across, down]: [f32; 2]) -> [f32; 3] {
     })
 }
 
-fn between_levels(image: &SkyImage, place: [f32; 2], roughness: f32) -> [f32; 3] {
+fn between_levels(sky: &Blurred, place: [f32; 2], roughness: f32) -> [f32; 3] {
     let roughness = if roughness >= LEAST_ROUGHNESS { roughness.min(1.0) } else { LEAST_ROUGHNESS };
-    let next = image.glossy.partition_point(|level| level.roughness < roughness).clamp(1, image.glossy.len() - 1);
-    let [a, b]: [&GlossyLevel; 2] = [&image.glossy[next - 1], &image.glossy[next]];
+    let next = sky.levels.partition_point(|level| level.roughness < roughness).clamp(1, sky.levels.len() - 1);
+    let [a, b]: [&GlossyLevel; 2] = [&sky.levels[next - 1], &sky.levels[next]];
     let share = (roughness - a.roughness) / (b.roughness - a.roughness);
-    let [lower, upper] = [a, b].map(|level| interpolated(&level.map, place));
+    let [lower, upper] = [a, b].map(|level| interpolated(level.map(), place));
     std::array::from_fn(|channel| lower[channel] + (upper[channel] - lower[channel]) * share)
 }

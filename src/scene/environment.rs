@@ -1,8 +1,10 @@
 //! What surrounds a scene: a sky that lights it from everywhere and is seen where nothing is in the way.
 
-use super::sky::SkyImage;
+use super::sky::{Blurred, SkyMap};
 use glam::Vec3;
-use std::sync::Arc;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 
 /// A sky around the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,3 +47,86 @@ pub struct Gradient {
     /// Straight down.
     pub ground: Vec3,
 }
+
+/// An equirectangular picture: its middle is seen along -Z, its left and right edges along +Z, its top row straight up; what is
+/// right of its middle is seen along +X.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkyImage {
+    /// Name of its file, for people.
+    pub name: String,
+    /// In texels, at least 1.
+    pub width: u32,
+    /// In texels, at least 1.
+    pub height: u32,
+    /// Width and height in the file: larger where the picture was reduced.
+    pub source: (u32, u32),
+    /// Linear radiance, finite and at least 0, row by row from the top.
+    pub texels: Box<[[f32; 3]]>,
+    /// What rough and matte surfaces get of it, once somebody asked.
+    pub(in crate::scene) blurred: OnceLock<Blurred>,
+}
+
+impl SkyImage {
+    /// A picture that was not reduced; `None` unless there is at least one texel and as many as the size says.
+    pub fn new(name: &str, size: (u32, u32), texels: Box<[[f32; 3]]>) -> Option<Self> {
+        let (width, height) = size;
+        let count = u64::from(width) * u64::from(height);
+        let is_whole = count > 0 && count == texels.len() as u64;
+        let blurred = OnceLock::new();
+        is_whole.then(|| Self { name: name.to_owned(), width, height, source: size, texels, blurred })
+    }
+
+    /// Its texels by direction.
+    pub fn map(&self) -> SkyMap<'_> {
+        SkyMap { width: self.width, height: self.height, texels: &self.texels }
+    }
+
+    /// What rough and matte surfaces get of it.
+    pub fn blurred(&self) -> &Blurred {
+        self.blurred.get_or_init(|| Blurred::of(self.map()))
+    }
+}
+
+/// Which environment a scene is loaded with.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum EnvironmentChoice {
+    /// That of its file.
+    #[default]
+    Scene,
+    /// None.
+    None,
+    /// The built-in studio.
+    Studio,
+    /// An image file, wherever it is.
+    File(PathBuf),
+}
+
+impl EnvironmentChoice {
+    /// The choice that `--environment` names: `studio`, `none`, or the path of an image.
+    pub fn named(name: &OsStr) -> Self {
+        match name.to_str() {
+            Some("studio") => Self::Studio,
+            Some("none") => Self::None,
+            _ => Self::File(name.into()),
+        }
+    }
+
+    /// The value of `--environment` that names this choice; `None` for the scene's own environment, which has no name.
+    pub fn name(&self) -> Option<&OsStr> {
+        match self {
+            Self::Scene => None,
+            Self::None => Some("none".as_ref()),
+            Self::Studio => Some("studio".as_ref()),
+            Self::File(path) => Some(path.as_os_str()),
+        }
+    }
+
+    /// Whether a file of this name is an image that can surround a scene.
+    pub fn is_image(path: &Path) -> bool {
+        path.extension()
+            .is_some_and(|extension| SKY_EXTENSIONS.iter().any(|known| extension.eq_ignore_ascii_case(known)))
+    }
+}
+
+/// Extensions of images that can surround a scene.
+pub const SKY_EXTENSIONS: [&str; 2] = ["hdr", "exr"];

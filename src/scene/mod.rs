@@ -26,10 +26,11 @@ pub mod sky;
 pub mod texels;
 pub mod texture;
 
-pub use build::Instancing;
+pub use build::{Instancing, read_sky};
 pub use builtin::{builtin, nothing};
 pub use camera::{Camera, FileCamera};
-pub use environment::{Environment, Sky};
+
+pub use environment::{Environment, EnvironmentChoice, Sky};
 pub use error::{SceneError, Warning};
 pub use format::{FORMATS, Format, LoadOptions, load, load_embedded, load_text, read_camera};
 pub use light::Light;
@@ -68,6 +69,8 @@ pub struct RenderDefaults {
     pub background: Vec3,
     /// Linear ambient light, multiplied by each material's `ambient`.
     pub ambient: Vec3,
+    /// Whether the file gives the ambient light.
+    pub ambient_is_given: bool,
     /// How its light is exposed.
     pub exposure: Exposure,
     /// Tone curve of its 8-bit pictures.
@@ -82,6 +85,7 @@ impl Default for RenderDefaults {
             max_depth: 5,
             background: Vec3::ZERO,
             ambient: Vec3::ONE,
+            ambient_is_given: false,
             exposure: Exposure::Stops(0.0),
             tone_map: ToneMap::None,
         }
@@ -157,6 +161,11 @@ impl Scene {
             warnings: self.warnings.clone(),
             ..*self
         }
+    }
+
+    /// The same place with another environment around it, or none; lights and exposure stay.
+    pub fn with_environment(&self, environment: Option<Environment>) -> Self {
+        Self { environment, headlight: self.headlight, ..self.with_lights(self.lights.clone()) }
     }
 
     /// What the colour of unlit surfaces is to be multiplied by, so that under `exposure` they are seen as the file has

@@ -48,13 +48,13 @@ pub struct Point {
     pub irradiance: f64,
 }
 
-/// What `camera` sees, lit or not. An empty list of lights is a headlight.
+/// What `camera` sees, lit by `lights` or not.
 pub fn points(probe: &mut Probe, camera: &Camera, lights: &[Light]) -> Vec<Point> {
-    let headlight = [at_eye(camera)];
-    seen(probe, camera, &view(camera), if lights.is_empty() { &headlight } else { lights })
+    seen(probe, camera, &view(camera), lights)
 }
 
-fn at_eye(camera: &Camera) -> Light {
+/// A light at the eye.
+pub fn at_eye(camera: &Camera) -> Light {
     let kind = LightKind::Point { position: camera.eye };
     Light { name: None, kind, color: Vec3::ONE, falloff: Falloff::None }
 }

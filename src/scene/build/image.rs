@@ -121,6 +121,16 @@ impl ImageStore {
         &mut self.files
     }
 
+    /// How many bytes more images may take.
+    pub fn bytes_left(&self) -> u64 {
+        self.bytes_left
+    }
+
+    /// Counts an image of so many bytes that is kept elsewhere.
+    pub fn take(&mut self, bytes: u64) {
+        self.bytes_left = self.bytes_left.saturating_sub(bytes);
+    }
+
     /// The texels of images, in the same order; `None` for one that is missing and may be, which is warned of.
     ///
     /// # Errors

@@ -54,24 +54,33 @@ pub struct Lit<'a> {
 }
 
 impl Lit<'_> {
-    /// Light by the file's lights and sky alone, or a light at the eye where it has neither.
-    pub fn as_it_is(&mut self, lights: Vec<Light>, environment: Option<Environment>) -> Lighting {
-        let headlight = lights.is_empty() && environment.is_none();
-        let sky = environment.as_ref().map(SkyLight::new);
-        let usual = match lights.is_empty() && !headlight {
-            true => None,
-            false => brightness::usual_irradiance(&mut self.probe, &self.camera, &lights),
+    /// Light by the file's lights alone, or a light at the eye where it has none.
+    pub fn as_it_is(&mut self, lights: Vec<Light>) -> Lighting {
+        let irradiance = brightness::usual_irradiance(&mut self.probe, &self.camera, &lights).unwrap_or(1.0);
+        let headlight = lights.is_empty();
+        let ambient = match headlight {
+            true => Some(Vec3::splat(AMBIENT_SHARE)),
+            false if self.is_exposed => Some(Vec3::splat(AMBIENT_SHARE * irradiance as f32)),
+            false => None,
         };
-        let by_sky = sky.map_or(0.0, |sky| PI * f64::from(luminance(sky.irradiance.over_pi(Vec3::Y))));
-        let irradiance = usual.unwrap_or(if by_sky > 0.0 { 0.0 } else { 1.0 }) + by_sky;
-        let ambient = if headlight {
-            Some(Vec3::splat(AMBIENT_SHARE))
-        } else if self.is_exposed && !lights.is_empty() && environment.is_none() {
-            Some(Vec3::splat(AMBIENT_SHARE * irradiance as f32))
-        } else {
-            None
+        Lighting { lights, headlight, ambient, environment: None, stops: self.stops(irradiance) as f32 }
+    }
+
+    /// Light by a sky, and by the lights that the file has.
+    pub fn by_sky(&mut self, lights: Vec<Light>, environment: Environment) -> Lighting {
+        let sky = SkyLight::new(&environment).irradiance;
+        // The mean of what it gives surfaces that face up and down.
+        let by_sky = f64::from(luminance(sky.over_pi(Vec3::Y) + sky.over_pi(Vec3::NEG_Y))) / 2.0;
+        let by_lights = match lights.is_empty() {
+            true => 0.0,
+            false => brightness::usual_irradiance(&mut self.probe, &self.camera, &lights).unwrap_or(0.0),
         };
-        Lighting { lights, headlight, ambient, environment, stops: self.stops(irradiance) as f32 }
+        let scattered = if self.is_physical() { PI } else { 1.0 };
+        let irradiance = by_lights + scattered * by_sky;
+        let stops = self.stops(if irradiance > 0.0 { irradiance } else { 1.0 });
+        let stops = self.adjusted(stops, &lights, &environment);
+        let ambient = self.is_exposed.then_some(Vec3::ZERO);
+        Lighting { lights, headlight: false, ambient, environment: Some(environment), stops: stops as f32 }
     }
 
     /// Light by a studio, which is the only one, or fills the shadows of what the file has.
@@ -106,8 +115,9 @@ impl Lit<'_> {
         let usual = brightness::usual_irradiance(&mut self.probe, &self.camera, &lights).unwrap_or(1.0);
         let scattered = if self.is_physical() { usual / PI } else { usual };
         let environment = studio(AMBIENT_SHARE * scattered as f32 / full);
-        let stops = self.adjusted(self.stops(usual), &lights, &environment);
         let headlight = lights.is_empty();
+        let at_eye = [brightness::at_eye(&self.camera)];
+        let stops = self.adjusted(self.stops(usual), if headlight { &at_eye } else { &lights }, &environment);
         let environment = Some(environment);
         Lighting { lights, headlight, ambient: Some(Vec3::ZERO), environment, stops: stops as f32 }
     }

@@ -19,28 +19,30 @@ mod placeholder;
 mod placement;
 pub mod probe;
 mod sharing;
+mod sky;
+mod surroundings;
 
 pub use bounds::finite_bounds;
 pub use sharing::Instancing;
+pub use surroundings::read_sky;
 
 use super::desc::map::shortened;
 use super::desc::problem::{At, Outcome, Problem, Warnings};
 use super::desc::{
     CameraDesc, ImageSource, MaterialDesc, NameRef, ObjectDesc, SceneDesc, TextureDesc, TextureKind, hint,
 };
+use super::environment::{Environment, EnvironmentChoice, Sky};
 use super::error::Warning;
 use super::files::{FileError, Files};
 use super::format::{Format, LoadOptions};
 use super::limits::{Limits, exceeded};
 use super::material::{Alpha, Encoding};
 use super::texture::ImageTexture;
-use super::{
-    Environment, Light, Material, NamedCamera, Object, Progress, RenderDefaults, Scene, Texture, next_generation,
-};
+use super::{Light, Material, NamedCamera, Object, Progress, RenderDefaults, Scene, Texture, next_generation};
 use crate::geometry::{Aabb, Contacts, Geometry, Part};
 use crate::settings::Exposure;
 use allowance::Allowance;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec3, Vec3};
 use holes::HoleMaps;
 use image::{ImageStore, Wanted};
 use lighting::{Lighting, Lit};
@@ -96,8 +98,9 @@ pub struct SceneBuilder {
     lights: Vec<Light>,
     cameras: Vec<NamedCamera>,
     render: RenderDefaults,
-    /// The sky around it, as the file or the user has it.
+    /// What surrounds the scene, by its file or by what was asked for.
     environment: Option<Environment>,
+    environment_choice: EnvironmentChoice,
     /// Whether a studio lights it.
     studio: bool,
     warnings: Vec<Warning>,
@@ -133,6 +136,7 @@ impl SceneBuilder {
             render: RenderDefaults::default(),
             environment: None,
             studio: !format.says_how_it_is_lit,
+            environment_choice: EnvironmentChoice::Scene,
             warnings: Vec::new(),
         }
     }
@@ -174,13 +178,14 @@ impl SceneBuilder {
     /// A name that nothing bears, a file that cannot be read, a transform that does not fit its shape,
     /// or a limit that is exceeded.
     pub fn add(&mut self, scene: SceneDesc, warnings: &mut Warnings) -> Outcome<()> {
-        let SceneDesc { render, cameras, textures, materials, lights, objects } = scene;
+        let SceneDesc { render, environment, cameras, textures, materials, lights, objects } = scene;
         let materials = self.add_materials(materials, &textures, warnings)?;
         let contents = Contents { objects, lights, materials };
         if self.models.is_reading() {
             return self.place_model(contents, warnings);
         }
         self.render = render;
+        self.surround_as_described(environment, warnings)?;
         self.progress.begin("placing objects", 0);
         let before = (self.materials.len(), self.textures.len(), self.warnings.len());
         let mut odd = Warnings::default();
@@ -362,12 +367,19 @@ impl SceneBuilder {
             is_exposed: self.render.exposure == Exposure::Auto,
         };
         let lights = std::mem::take(&mut self.lights);
-        let Lighting { lights, headlight, ambient, environment, stops } = match self.studio {
-            true => lit.in_studio(lights),
-            false => lit.as_it_is(lights, self.environment),
+        let (lighting, is_exposed) = match (self.environment, self.environment_choice) {
+            (None, EnvironmentChoice::Scene) if self.studio => (lit.in_studio(lights), true),
+            (Some(Environment { sky: Sky::Studio, .. }), EnvironmentChoice::Studio) => {
+                (lit.in_studio(lights), self.studio)
+            }
+            (Some(environment), _) => (lit.by_sky(lights, environment), self.studio),
+            (None, _) => (lit.as_it_is(lights), false),
         };
-        self.render.ambient = ambient.unwrap_or(self.render.ambient);
-        if self.studio {
+        let Lighting { lights, headlight, ambient, environment, stops } = lighting;
+        // The sky takes the place of light from everywhere, unless the file asks for both.
+        let own = environment.is_none() || self.render.ambient_is_given;
+        self.render.ambient = ambient.unwrap_or(if own { self.render.ambient } else { Vec3::ZERO });
+        if is_exposed {
             self.render.exposure = Exposure::Auto;
         }
         if headlight {

@@ -4,6 +4,7 @@
 //! messages are the same for all. `build` turns the description into a [`Scene`](super::Scene).
 
 pub mod camera;
+pub mod environment;
 pub mod light;
 pub mod map;
 pub mod material;
@@ -17,6 +18,7 @@ pub mod transform;
 pub mod value;
 
 pub use crate::geometry::Mesh as MeshDesc;
+pub use environment::{EnvironmentDesc, SkyDesc};
 pub use material::MaterialDesc;
 pub use object::{ObjectDesc, ShapeDesc};
 pub use suggest::hint;
@@ -79,6 +81,8 @@ impl CameraDesc {
 pub struct SceneDesc {
     /// What it asks of the picture.
     pub render: RenderDefaults,
+    /// What surrounds the scene.
+    pub environment: Option<EnvironmentDesc>,
     /// Cameras; the unnamed one first.
     pub cameras: Vec<CameraDesc>,
     /// Textures by name.
@@ -108,7 +112,7 @@ pub fn read<'t, N: Node<'t>>(root: N, context: &mut Context) -> Outcome<SceneDes
     map.required("version", version)?;
     let mut scene = SceneDesc::default();
     if let Some(node) = map.take("render") {
-        scene.render = render::read(node, context)?;
+        (scene.render, scene.environment) = render::read(node, context)?;
     }
     if let Some(node) = map.take("camera") {
         scene.cameras.push(camera::read(node, "default".to_owned(), context)?);

@@ -16,6 +16,7 @@ pub use json::read_camera;
 use super::build::{Instancing, SceneBuilder};
 use super::desc::SceneDesc;
 use super::desc::problem::{At, Outcome, Warnings};
+use super::environment::EnvironmentChoice;
 use super::error::{Place, SceneError, Warning};
 use super::files::{FileError, Files};
 use super::guard::guarded;
@@ -31,6 +32,8 @@ pub struct LoadOptions {
     pub limits: Limits,
     /// When meshes that are placed several times are stored once.
     pub instancing: Instancing,
+    /// What surrounds the scene.
+    pub environment: EnvironmentChoice,
     /// Is told how far the load has come, and may end it.
     pub progress: Progress,
 }
@@ -138,6 +141,7 @@ fn read(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, Sce
 fn build(input: &Input, files: Files, options: &LoadOptions) -> Result<Scene, SceneError> {
     let format = format_of(input.path)?;
     let mut builder = SceneBuilder::new(input.path, format, files, options);
+    builder.surround(&options.environment)?;
     (format.read)(input, &mut builder)?;
     builder.finish().ok_or_else(|| SceneError::Cancelled { place: whole(input.path) })
 }

@@ -10,10 +10,10 @@ mod picture;
 mod smooth;
 
 pub use irradiance::Irradiance;
-pub use picture::{GlossyLevel, LEAST_ROUGHNESS, SkyImage, SkyMap};
+pub use picture::{Blurred, GlossyLevel, LEAST_ROUGHNESS, SkyMap};
 pub use smooth::{Lobe, Smooth};
 
-use super::environment::{Environment, Sky};
+use super::environment::{Environment, Sky, SkyImage};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
@@ -58,7 +58,7 @@ impl SkyLight {
             Sky::Image(image) => {
                 let radiance =
                     Radiance::Image { image: Arc::clone(image), turn: turn.map(|value| value as f32), intensity };
-                (radiance, image.irradiance.scaled(intensity).turned(turn))
+                (radiance, image.blurred().irradiance.scaled(intensity).turned(turn))
             }
         };
         let backdrop_as_shown = (environment.sky == Sky::Studio).then(Smooth::studio_backdrop);

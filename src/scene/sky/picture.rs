@@ -6,29 +6,25 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-/// An equirectangular picture: its middle is seen along -Z, its left and right edges along +Z, its top row straight up; what is
-/// right of its middle is seen along +X.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SkyImage {
-    /// Name of its file, for people.
-    pub name: String,
-    /// Its radiance.
-    pub sharp: SkyMap,
-    /// Blurred as surfaces of rising roughness reflect it, from [`LEAST_ROUGHNESS`] to 1.
-    pub glossy: Box<[GlossyLevel]>,
-    /// What it gives matte surfaces.
-    pub irradiance: Irradiance,
-}
-
-/// Linear radiance in equirectangular layout, row by row from the top.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SkyMap {
+/// Linear radiance, finite and at least 0, in equirectangular layout, row by row from the top: the middle is seen along -Z, what
+/// is right of it along +X.
+#[derive(Clone, Copy, Debug)]
+pub struct SkyMap<'a> {
     /// In texels, at least 1.
     pub width: u32,
     /// In texels, at least 1.
     pub height: u32,
-    /// Finite and at least 0.
-    pub texels: Box<[[f32; 3]]>,
+    /// `width` x `height` of them.
+    pub texels: &'a [[f32; 3]],
+}
+
+/// A sky as rough and matte surfaces reflect it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Blurred {
+    /// For rising roughness, from [`LEAST_ROUGHNESS`] to 1.
+    pub levels: Box<[GlossyLevel]>,
+    /// What it gives matte surfaces.
+    pub irradiance: Irradiance,
 }
 
 /// A sky as a surface of some roughness reflects it.
@@ -36,8 +32,16 @@ pub struct SkyMap {
 pub struct GlossyLevel {
     /// Perceptual roughness, as glTF has it.
     pub roughness: f32,
+    /// Of the blurred map.
+    width: u32,
+    texels: Box<[[f32; 3]]>,
+}
+
+impl GlossyLevel {
     /// The blurred sky.
-    pub map: SkyMap,
+    pub fn map(&self) -> SkyMap<'_> {
+        SkyMap { width: self.width, height: self.width / 2, texels: &self.texels }
+    }
 }
 
 /// Least roughness that the sky is blurred for: what is smoother mirrors rays.
@@ -47,32 +51,33 @@ const LEVELS: [(f32, u32); 6] = [(LEAST_ROUGHNESS, 256), (0.2, 128), (0.3, 96), 
 /// Directions whose mean is one blurred texel.
 const SAMPLES: u32 = 64;
 
-impl SkyImage {
-    /// From a picture's texels.
-    pub fn new(name: String, sharp: SkyMap) -> Self {
+impl Blurred {
+    /// Of a picture.
+    pub fn of(sharp: SkyMap<'_>) -> Self {
         let irradiance = sharp.irradiance();
         let halved = sharp.halved_again_and_again();
-        let sizes: Vec<&SkyMap> = std::iter::once(&sharp).chain(&halved).collect();
-        let glossy = LEVELS.map(|(roughness, width)| GlossyLevel { roughness, map: blurred(&sizes, roughness, width) });
-        Self { name, irradiance, glossy: glossy.into(), sharp }
-    }
-
-    /// Memory that it takes, in bytes.
-    pub fn bytes(&self) -> usize {
-        let maps = self.glossy.iter().map(|level| &level.map).chain([&self.sharp]);
-        maps.map(|map| size_of_val(&*map.texels)).sum()
+        let sizes: Vec<SkyMap<'_>> = std::iter::once(sharp).chain(halved.iter().map(Halved::map)).collect();
+        let level = |(roughness, width)| GlossyLevel { roughness, width, texels: blurred(&sizes, roughness, width) };
+        Self { irradiance, levels: LEVELS.map(level).into() }
     }
 }
 
-impl SkyMap {
-    /// `None` unless there are `width` x `height` texels, both at least 1.
-    pub fn new(width: u32, height: u32, texels: Box<[[f32; 3]]>) -> Option<Self> {
-        let fits = width > 0 && height > 0 && texels.len() as u64 == u64::from(width) * u64::from(height);
-        fits.then_some(Self { width, height, texels })
-    }
+/// A picture at a smaller size.
+struct Halved {
+    width: u32,
+    height: u32,
+    texels: Vec<[f32; 3]>,
+}
 
+impl Halved {
+    fn map(&self) -> SkyMap<'_> {
+        SkyMap { width: self.width, height: self.height, texels: &self.texels }
+    }
+}
+
+impl SkyMap<'_> {
     /// Half as wide and high, rounded up, by the mean of up to four texels.
-    pub fn halved(&self) -> Self {
+    fn halved(&self) -> Halved {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let texel = |x: u32, y: u32| DVec3::from_array(self.texels[(y * self.width + x) as usize].map(f64::from));
         let mean = |x: u32, y: u32| {
@@ -80,32 +85,32 @@ impl SkyMap {
             let sum = texel(2 * x, 2 * y) + texel(right, 2 * y) + texel(2 * x, below) + texel(right, below);
             (sum / 4.0).as_vec3().to_array()
         };
+        let mean = &mean;
         let rows = (0..height).into_par_iter();
-        let texels: Vec<[f32; 3]> = rows.flat_map_iter(|y| (0..width).map(move |x| mean(x, y))).collect();
-        Self { width, height, texels: texels.into() }
+        let texels = rows.flat_map_iter(|y| (0..width).map(move |x| mean(x, y))).collect();
+        Halved { width, height, texels }
     }
 
-    fn halved_again_and_again(&self) -> Vec<Self> {
-        let mut sizes: Vec<Self> = Vec::new();
+    fn halved_again_and_again(&self) -> Vec<Halved> {
+        let mut sizes: Vec<Halved> = Vec::new();
         loop {
-            let last = sizes.last().unwrap_or(self);
-            if last.width.max(last.height) == 1 {
-                return sizes;
-            }
-            let next = last.halved();
+            let next = match sizes.last() {
+                None => self.halved(),
+                Some(last) if last.width.max(last.height) == 1 => return sizes,
+                Some(last) => last.map().halved(),
+            };
             sizes.push(next);
         }
     }
 
     fn irradiance(&self) -> Irradiance {
         let moments_of = |row: u32| {
-            let elevation = PI * (0.5 - (f64::from(row) + 0.5) / f64::from(self.height));
-            let (y, across) = (libm::sin(elevation), libm::cos(elevation));
             let mut moments = Moments::default();
             for column in 0..self.width {
-                let angle = TAU * ((f64::from(column) + 0.5) / f64::from(self.width) - 0.5);
-                let direction = DVec3::new(across * libm::sin(angle), y, -across * libm::cos(angle));
+                let direction = direction((self.width, self.height), column, row);
                 let texel = self.texels[(row * self.width + column) as usize];
+                // Towards the poles the same number of texels covers less.
+                let across = libm::hypot(direction.x, direction.z);
                 moments.add(direction, DVec3::from_array(texel.map(f64::from)), across);
             }
             moments
@@ -130,14 +135,14 @@ impl SkyMap {
         let row = |y: f64| texel(left, y) * (1.0 - across) + texel(left + 1.0, y) * across;
         row(above) * (1.0 - down) + row(above + 1.0) * down
     }
+}
 
-    /// The middle of a texel.
-    fn direction(&self, column: u32, row: u32) -> DVec3 {
-        let elevation = PI * (0.5 - (f64::from(row) + 0.5) / f64::from(self.height));
-        let angle = TAU * ((f64::from(column) + 0.5) / f64::from(self.width) - 0.5);
-        let across = libm::cos(elevation);
-        DVec3::new(across * libm::sin(angle), libm::sin(elevation), -across * libm::cos(angle))
-    }
+/// Where the middle of a texel of a picture of `width` x `height` is seen.
+fn direction((width, height): (u32, u32), column: u32, row: u32) -> DVec3 {
+    let elevation = PI * (0.5 - (f64::from(row) + 0.5) / f64::from(height));
+    let angle = TAU * ((f64::from(column) + 0.5) / f64::from(width) - 0.5);
+    let across = libm::cos(elevation);
+    DVec3::new(across * libm::sin(angle), libm::sin(elevation), -across * libm::cos(angle))
 }
 
 /// A direction of a kernel around +Z.
@@ -170,7 +175,7 @@ fn taps(roughness: f32) -> Vec<Tap> {
 /// A sky, given at falling sizes, as a surface of some roughness reflects it: each direction of the kernel looks up the size
 /// whose texels cover what it stands for (Křivánek and Colbert, "Real-time shading with filtered importance
 /// sampling", EGSR 2008).
-fn blurred(sizes: &[&SkyMap], roughness: f32, width: u32) -> SkyMap {
+fn blurred(sizes: &[SkyMap<'_>], roughness: f32, width: u32) -> Box<[[f32; 3]]> {
     let texels_all_around = f64::from(sizes[0].width) * f64::from(sizes[0].height);
     let size_of = |tap: &Tap| {
         let texels = tap.around / (2.0 * TAU) * texels_all_around;
@@ -178,14 +183,13 @@ fn blurred(sizes: &[&SkyMap], roughness: f32, width: u32) -> SkyMap {
         sizes[(level as usize).min(sizes.len() - 1)]
     };
     let taps = taps(roughness);
-    let taps: Vec<(&Tap, &SkyMap)> = taps.iter().map(|tap| (tap, size_of(tap))).collect();
+    let taps: Vec<(&Tap, SkyMap<'_>)> = taps.iter().map(|tap| (tap, size_of(tap))).collect();
     let weight: f64 = taps.iter().map(|(tap, _)| tap.weight).sum();
     let height = width / 2;
-    let place = SkyMap { width, height, texels: Box::default() };
     let mean = |column: u32, row: u32| {
-        let z = place.direction(column, row);
+        let z = direction((width, height), column, row);
         let (x, y) = z.any_orthonormal_pair();
-        let seen = |(tap, map): &(&Tap, &SkyMap)| {
+        let seen = |(tap, map): &(&Tap, SkyMap<'_>)| {
             let DVec3 { x: across, y: up, z: along } = tap.direction;
             map.radiance(x * across + y * up + z * along) * tap.weight
         };
@@ -194,40 +198,44 @@ fn blurred(sizes: &[&SkyMap], roughness: f32, width: u32) -> SkyMap {
     let mean = &mean;
     let rows = (0..height).into_par_iter();
     let texels: Vec<[f32; 3]> = rows.flat_map_iter(|row| (0..width).map(move |column| mean(column, row))).collect();
-    SkyMap { texels: texels.into(), ..place }
+    texels.into()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::environment::SkyImage;
     use glam::Vec3;
 
     fn picture(width: u32, sky: impl Fn(DVec3) -> DVec3) -> SkyImage {
-        let height = width / 2;
-        let place = SkyMap { width, height, texels: Box::default() };
-        let places = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
-        let texels = places.map(|(column, row)| sky(place.direction(column, row)).as_vec3().to_array());
-        SkyImage::new("test".to_owned(), SkyMap { texels: texels.collect(), ..place })
+        let size = (width, width / 2);
+        let places = (0..size.1).flat_map(|row| (0..width).map(move |column| (column, row)));
+        let texels = places.map(|(column, row)| sky(direction(size, column, row)).as_vec3().to_array());
+        SkyImage::new("test", size, texels.collect()).unwrap()
     }
 
     #[test]
     fn a_constant_sky_stays_so_however_blurred() {
         let image = picture(64, |_| DVec3::splat(0.7));
-        for level in &image.glossy {
-            assert!(level.map.texels.iter().flatten().all(|value| (value - 0.7).abs() < 1e-5), "{}", level.roughness);
+        for level in &image.blurred().levels {
+            assert!(level.texels.iter().flatten().all(|value| (value - 0.7).abs() < 1e-5), "{}", level.roughness);
         }
-        assert!((image.irradiance.over_pi(Vec3::new(0.6, 0.0, 0.8)) - Vec3::splat(0.7)).abs().max_element() < 1e-4);
+        assert!(
+            (image.blurred().irradiance.over_pi(Vec3::new(0.6, 0.0, 0.8)) - Vec3::splat(0.7)).abs().max_element()
+                < 1e-4
+        );
     }
 
     #[test]
     fn directions_are_where_the_layout_says() {
         let image = picture(256, |d| d.max(DVec3::ZERO));
         for direction in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.6, 0.64, -0.48)] {
-            let difference = image.sharp.radiance(direction) - direction.max(DVec3::ZERO);
+            let difference = image.map().radiance(direction) - direction.max(DVec3::ZERO);
             assert!(difference.abs().max_element() < 0.02, "{direction}: off by {difference}");
         }
-        assert_eq!(image.sharp.direction(128, 64).y.signum(), -1.0);
-        assert!(image.sharp.direction(191, 63).x > 0.99 && image.sharp.direction(128, 63).z < -0.99);
+        let size = (256, 128);
+        assert!(direction(size, 128, 64).y < 0.0 && direction(size, 191, 63).x > 0.99);
+        assert!(direction(size, 128, 63).z < -0.99);
     }
 
     /// A rough surface's reflection by a sum over many half vectors, straight ahead.
@@ -254,9 +262,9 @@ mod tests {
     fn blurred_skies_are_those_of_a_sum_over_half_vectors() {
         let sky = |d: DVec3| DVec3::new((3.0 * d.x).sin().abs(), (2.0 * d.y + d.z).max(0.0), 1.0 + 0.5 * d.z);
         let image = picture(512, sky);
-        for level in &image.glossy {
+        for level in &image.blurred().levels {
             for direction in [DVec3::X, DVec3::Y, DVec3::new(0.6, -0.48, -0.64)] {
-                let difference = level.map.radiance(direction) - summed(sky, direction, level.roughness.into());
+                let difference = level.map().radiance(direction) - summed(sky, direction, level.roughness.into());
                 assert!(difference.abs().max_element() < 0.03, "{} {direction}: {difference}", level.roughness);
             }
         }

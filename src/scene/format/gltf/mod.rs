@@ -145,6 +145,7 @@ fn describe(
             tone_map: ToneMap::Neutral,
             ..render
         },
+        environment: None,
         cameras: camera::cameras(document, &nodes, || objects::bounds(&objects), report)?,
         textures: textures.descs,
         materials: materials.descs,
