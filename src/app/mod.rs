@@ -22,6 +22,7 @@ pub mod overlay;
 pub mod present;
 pub mod scenes;
 pub mod screenshot;
+pub mod surroundings;
 pub mod survey;
 pub mod terminal;
 pub mod walker;

@@ -7,7 +7,7 @@ use super::tracer::Job;
 use crate::picture::{EightBit, Note, NumberedName, PendingFile, write_annotated};
 use crate::render::Film;
 use crate::scene::camera::shortest;
-use crate::scene::{Camera, Limits, NamedCamera};
+use crate::scene::{Camera, EnvironmentChoice, Limits, NamedCamera};
 use crate::settings::{ROWS, Row, Settings, Supersample};
 use glam::DVec3;
 use std::ffi::OsStr;
@@ -39,6 +39,10 @@ pub struct Place {
     pub turned: Vec<String>,
     /// How the scene was loaded.
     pub limits: Limits,
+    /// What surrounds the scene, as far as it can be named.
+    pub environment: EnvironmentChoice,
+    /// How that differs from what it is by its name, in words.
+    pub environment_turned: Option<String>,
 }
 
 /// A picture on display, and what made it.
@@ -165,6 +169,9 @@ fn notes(shot: &Shot) -> Vec<Note> {
         let turned = place.turned.join("; ");
         notes.push(("raywalk:lights", format!("{turned}; the command makes the picture with all as in the file")));
     }
+    if let Some(turned) = &place.environment_turned {
+        notes.push(("raywalk:environment", format!("{turned}; the command makes the picture without that")));
+    }
     let Camera { near, far, .. } = shot.job.camera;
     if camera_alike(shot).is_none() {
         notes.push(("raywalk:clipping", format!("from {near} to {far}, which the command leaves out")));
@@ -198,6 +205,7 @@ fn command(shot: &Shot, settings: &Settings) -> String {
     words.extend(place.file.as_ref().map(|file| quoted(file.as_os_str())));
     words.push(format!("--size {}x{}", shot.picture.width, shot.picture.height));
     words.extend(place.limits.changed().map(|(name, value)| format!("--limit {name}={value}")));
+    words.extend(environment_flag(&place.environment));
     if let Some(index) = camera_alike(shot).filter(|index| *index > 0) {
         words.push(format!("--camera {}", quoted(place.cameras[index].name.as_ref())));
     }
@@ -209,6 +217,11 @@ fn command(shot: &Shot, settings: &Settings) -> String {
         words.push(format!("--map {}", shot.job.aspect.map.name()));
     }
     words.join(" ")
+}
+
+/// The flag that names an environment, as a shell takes it.
+pub fn environment_flag(choice: &EnvironmentChoice) -> Option<String> {
+    choice.name().map(|name| format!("--environment {}", quoted(name)))
 }
 
 /// The first camera of the scene that sees as near and as far: these have no flags of their own.
@@ -274,6 +287,8 @@ mod tests {
             cameras: vec![named("default", 0.5), named("back door", 0.0)],
             turned: Vec::new(),
             limits: Limits::default(),
+            environment: EnvironmentChoice::Scene,
+            environment_turned: None,
         }
     }
 
@@ -293,6 +308,9 @@ mod tests {
         let mut limits = Limits::default();
         limits.set("nodes", "7").expect("allowed");
         assert!(of(shot(None), Place { limits, ..place(None) }).contains("--size 8x4 --limit nodes=7 --camera"));
+        let sky = EnvironmentChoice::File("my sky.hdr".into());
+        let surrounded = of(shot(None), Place { environment: sky, ..place(None) });
+        assert!(surrounded.contains("--size 8x4 --environment 'my sky.hdr' --camera"), "{surrounded}");
         let of_file = |file| of(shot(None), place(Some(file)));
         assert!(of_file("it's.json").starts_with(r"raywalk render 'it'\''s.json' --size"));
         assert!(of_file("d'été\n.json").starts_with(r"raywalk render $'d\'\303\251t\303\251\012.json' --size"));

@@ -227,12 +227,17 @@ fn with_options(command: Command) -> Command {
 }
 
 /// Options of every command that reads a scene.
-fn reading() -> [Arg; 3] {
+fn reading() -> [Arg; 4] {
     let limits: Vec<String> = Limits::help().collect();
     [
         limit()
             .help("Change a limit on what a scene may ask of the machine")
             .long_help(format!("Change a limit on what a scene may ask of the machine\n{}", limits.join("\n"))),
+        Arg::new("environment")
+            .long("environment")
+            .value_name("FILE|studio|none")
+            .value_parser(value_parser!(PathBuf))
+            .help("What surrounds the scene: an equirectangular picture (.hdr, .exr), studio, none [default: the scene's]"),
         switch("strict", "Treat the scene's warnings as errors"),
         switch("quiet", "No progress bar and no warnings"),
     ]

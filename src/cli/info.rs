@@ -34,6 +34,9 @@ struct Info {
     lights_by_type: BTreeMap<&'static str, usize>,
     materials: usize,
     textures: Vec<String>,
+    /// What surrounds the scene; left out where nothing does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    environment: Option<String>,
     cameras: Vec<CameraInfo>,
     /// Of everything finite, in the coordinates of the file; `null` if nothing is.
     bounds: Option<Bounds>,
@@ -72,6 +75,7 @@ impl Info {
             lights_by_type: tally(scene.lights.iter().map(kind_of_light).chain(headlight)),
             materials: scene.materials.len(),
             textures: scene.textures.iter().map(describe_texture).collect(),
+            environment: scene.environment.as_ref().map(ToString::to_string),
             cameras: scene.cameras.iter().map(|named| CameraInfo::of(named, scene)).collect(),
             bounds: (min.is_finite() && max.is_finite()).then(|| {
                 let [min, max] = [min, max].map(|corner| scene.in_file(corner).to_array());
@@ -103,6 +107,9 @@ impl Info {
             line("memory", &format!("{:.1} MiB", c.scene_bytes as f64 / f64::from(1 << 20))),
             line("depth", &format!("{} rays on a path", self.max_depth)),
         ];
+        if let Some(environment) = &self.environment {
+            lines.push(line("environment", environment));
+        }
         if let Some(origin) = self.origin {
             let why = "the scene is far from the file's origin; it was moved before its numbers were rounded";
             lines.push(line("origin", &format!("{origin:?} ({why})")));

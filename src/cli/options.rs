@@ -8,7 +8,7 @@ use raywalk::app::maps::Map;
 use raywalk::app::scenes::scene_file;
 use raywalk::render::Planes;
 use raywalk::scene::limits::exceeded;
-use raywalk::scene::{Limits, Progress};
+use raywalk::scene::{EnvironmentChoice, Limits, Progress};
 use raywalk::settings::{PRESETS, Preset, ROWS, Settings, Visibility};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -19,6 +19,7 @@ pub struct Reading {
     /// The file; `None` for the built-in scene.
     pub scene: Option<PathBuf>,
     pub limits: Limits,
+    pub environment: EnvironmentChoice,
     pub strict: bool,
     pub quiet: bool,
     /// Is told how far that has come.
@@ -63,11 +64,18 @@ impl Reading {
         Ok(Self {
             scene: scene.map(|path| scene_file(path)).transpose()?,
             limits: limits(asked)?,
+            environment: environment(asked),
             strict: asked.get_flag("strict"),
             quiet: asked.get_flag("quiet"),
             progress: Progress::default(),
         })
     }
+}
+
+/// The environment asked for, else the scene's.
+fn environment(asked: &ArgMatches) -> EnvironmentChoice {
+    let named = asked.get_one::<PathBuf>("environment").map(|name| EnvironmentChoice::named(name.as_os_str()));
+    named.unwrap_or_default()
 }
 
 /// The limits with what `asked` changes.
@@ -185,6 +193,21 @@ mod tests {
         let options = options(&line).expect("right");
         assert_eq!(options.planes, Planes { depth: true, normal: true, object: true, ..Planes::default() });
         assert_eq!(options.reading.limits.objects, 7);
+    }
+
+    #[test]
+    fn an_environment_is_a_word_or_a_file() {
+        let chosen = |line: &[&str]| {
+            let asked = command().try_get_matches_from(line).expect("it can be typed");
+            Reading::of(asked.subcommand().expect("a command").1).expect("right").environment
+        };
+        assert_eq!(chosen(&["raywalk", "render"]), EnvironmentChoice::Scene);
+        assert_eq!(chosen(&["raywalk", "render", "--environment", "none"]), EnvironmentChoice::None);
+        assert_eq!(chosen(&["raywalk", "info", "--environment=studio"]), EnvironmentChoice::Studio);
+        let file = |name: &str| EnvironmentChoice::File(name.into());
+        assert_eq!(chosen(&["raywalk", "bench", "-o", "d", "--environment", "a b.hdr"]), file("a b.hdr"));
+        assert_eq!(chosen(&["raywalk", "info", "--environment", "./studio"]), file("./studio"));
+        assert!(command().try_get_matches_from(["raywalk", "--environment", ""]).is_err());
     }
 
     #[test]

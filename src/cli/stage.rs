@@ -36,6 +36,7 @@ pub fn load(reading: &Reading) -> Result<Loaded, SceneError> {
     let options = LoadOptions {
         strict: reading.strict,
         limits: reading.limits.clone(),
+        environment: reading.environment.clone(),
         progress: reading.progress.clone(),
         ..LoadOptions::default()
     };

@@ -9,6 +9,7 @@ use super::stage::Stage;
 use super::{Failure, stdout};
 use clap::ArgMatches;
 use clap::parser::ValueSource;
+use raywalk::app::screenshot;
 use raywalk::measure::tune::{self, Bound, Machine, Task, Tuning};
 use raywalk::settings::{ROWS, Settings};
 use std::time::Duration;
@@ -57,10 +58,11 @@ pub fn run(asked: &ArgMatches, interrupt: &Interrupt) -> Result<(), Failure> {
     let found = tune::tune(&task, &mut machine).map_err(|tune::Stopped| Failure::Interrupted)?;
     drop(progress);
     interrupt.check()?;
+    let environment = screenshot::environment_flag(&options.reading.environment);
     if !asked.get_flag("json") {
-        stdout::print(&tune::table(&found))?;
+        stdout::print(&tune::table(&found, environment.as_deref()))?;
     }
-    stdout::print(&stdout::json(&tune::json(&found))?)?;
+    stdout::print(&stdout::json(&tune::json(&found, environment.as_deref()))?)?;
     if found.chosen.is_some() { Ok(()) } else { Err(Failure::Run(nothing_keeps(&found))) }
 }
 

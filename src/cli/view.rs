@@ -55,6 +55,7 @@ pub fn run(asked: &ArgMatches, interrupt: &Interrupt) -> Result<(), Failure> {
         load: LoadOptions {
             strict: options.reading.strict,
             limits: options.reading.limits.clone(),
+            environment: options.reading.environment.clone(),
             ..LoadOptions::default()
         },
         settings: options.settings.clone(),

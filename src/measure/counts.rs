@@ -2,13 +2,13 @@
 
 use crate::geometry::PrimitiveKind;
 use crate::scene::texture::Texture;
-use crate::scene::{Material, Object, Scene};
+use crate::scene::{Material, Object, Scene, Sky};
 use serde::Serialize;
 
 /// How much of what a scene holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct SceneCounts {
-    /// Bytes held by geometry, tree, objects, materials and textures.
+    /// Bytes held by geometry, tree, objects, materials, textures and the sky.
     pub scene_bytes: u64,
     /// Triangles.
     pub triangles: u64,
@@ -28,7 +28,7 @@ impl SceneCounts {
         let texels: usize = scene.textures.iter().map(texture_bytes).sum();
         let tables = scene.objects.len() * size_of::<Object>() + scene.materials.capacity() * size_of::<Material>();
         Self {
-            scene_bytes: (scene.geometry.bytes() + texels + tables) as u64,
+            scene_bytes: (scene.geometry.bytes() + texels + tables + sky_bytes(scene)) as u64,
             triangles: (scene.geometry.count(PrimitiveKind::Triangle) + scene.geometry.count(PrimitiveKind::Cutout))
                 as u64,
             spheres: scene.geometry.count(PrimitiveKind::Sphere) as u64,
@@ -36,6 +36,13 @@ impl SceneCounts {
             lights: (scene.lights.len() + usize::from(scene.headlight)) as u64,
             objects: scene.objects.len() as u64,
         }
+    }
+}
+
+fn sky_bytes(scene: &Scene) -> usize {
+    match scene.environment.as_ref().map(|environment| &environment.sky) {
+        Some(Sky::Image(image)) => size_of_val(&*image.texels),
+        _ => 0,
     }
 }
 

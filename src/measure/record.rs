@@ -126,7 +126,7 @@ impl Record {
             frames: run.frames(),
             threads,
             simd,
-            settings: settings_json(&settings),
+            settings: with_environment(settings_json(&settings), scene),
             load_ms,
             build_ms,
             frame_ms: run.frame_ms(),
@@ -142,6 +142,13 @@ impl Record {
             counts: SceneCounts::of(scene),
         }
     }
+}
+
+/// The settings, and what surrounds the scene.
+fn with_environment(mut settings: Value, scene: &Scene) -> Value {
+    let environment = scene.environment.as_ref().map_or_else(|| "none".to_owned(), ToString::to_string);
+    settings["environment"] = environment.into();
+    settings
 }
 
 /// Every setting by its name, as it would be typed.

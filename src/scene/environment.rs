@@ -3,6 +3,7 @@
 use super::sky::{Blurred, SkyMap};
 use glam::Vec3;
 use std::ffi::OsStr;
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -23,6 +24,30 @@ impl Environment {
     /// A sky as it is, shown behind the scene.
     pub fn new(sky: Sky) -> Self {
         Self { sky, rotation: 0.0, intensity: 1.0, backdrop: true }
+    }
+}
+
+/// In words, such as `image sky.hdr 2048x1024, rotation 30`.
+impl fmt::Display for Environment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.sky {
+            Sky::Gradient(_) => f.write_str("gradient")?,
+            Sky::Studio => f.write_str("studio")?,
+            Sky::Image(image) => {
+                let SkyImage { name, width, height, source: (across, down), .. } = &**image;
+                write!(f, "image {name} {width}x{height}")?;
+                if (*across, *down) != (*width, *height) {
+                    write!(f, " (reduced from {across}x{down})")?;
+                }
+            }
+        }
+        if self.rotation != 0.0 {
+            write!(f, ", rotation {}", self.rotation)?;
+        }
+        if self.intensity != 1.0 {
+            write!(f, ", intensity {}", self.intensity)?;
+        }
+        f.write_str(if self.backdrop { "" } else { ", not seen behind the scene" })
     }
 }
 

@@ -12,6 +12,7 @@ use raywalk::app::maps::{Class, Key, Legend, Map, Scale};
 use raywalk::app::methods::{self, Methods, Side};
 use raywalk::app::overlay::{self, Change, Notices, Showing, Shown, Tuning, View, theme};
 use raywalk::app::scenes::{Failure, Loading, Report, Wish};
+use raywalk::app::surroundings::{self, Surroundings};
 use raywalk::app::survey::{End, Point, Survey};
 use raywalk::geometry::{Aabb, Geometry};
 use raywalk::math::simd;
@@ -61,6 +62,7 @@ struct Panel {
     survey: Option<Survey>,
     report: Report<'static>,
     lights: Vec<Dial>,
+    surroundings: Surroundings,
     inspection: Option<Inspection>,
     notices: Notices,
     labels: Labels,
@@ -86,6 +88,7 @@ impl Panel {
             survey: None,
             report: Report::default(),
             lights: Vec::new(),
+            surroundings: Surroundings::default(),
             inspection: None,
             notices: Notices::default(),
             labels: Labels::default(),
@@ -121,6 +124,7 @@ impl Panel {
             },
             scenes: self.report.clone(),
             lights: &self.lights,
+            surroundings: &self.surroundings,
             inspection: self.inspection.as_ref(),
             stands: Some(Camera::default()),
             crosshair: true,
@@ -615,6 +619,38 @@ fn scenes_opened_before_are_opened_again() {
     assert_eq!(wish(&mut harness, "hall.glb"), Some(Wish::OpenFile("/scenes/hall.glb".into())));
     assert_eq!(wish(&mut harness, "Open..."), Some(Wish::Open));
     assert_eq!(wish(&mut harness, "Reload"), Some(Wish::Reload));
+}
+
+#[test]
+fn an_environment_is_chosen_turned_and_hidden() {
+    let ask = |harness: &mut Harness<'_, Panel>| match harness.state_mut().changes.pop() {
+        Some(Change::Environment(change)) => change,
+        other => panic!("{other:?}"),
+    };
+    let mut harness = Panel::new().harness();
+    harness.get_by_label("Environment").click();
+    harness.run();
+    harness.get_by_label_contains("drop an .hdr or .exr picture");
+    harness.get_by_label("Studio").click();
+    harness.run();
+    assert_eq!(ask(&mut harness), surroundings::Change::Studio);
+    let mut panel = Panel::new();
+    panel.surroundings.apply(surroundings::Change::Studio);
+    let (rotation, intensity) = (270.0, 250.0);
+    panel.surroundings.apply(surroundings::Change::Turn { rotation, intensity, backdrop: true });
+    let mut harness = panel.harness();
+    harness.get_by_label("Environment").click();
+    harness.run();
+    harness.get_by_label("studio, rotation 270, intensity 250");
+    assert_eq!(harness.state().changes, [], "showing turns nothing, even what no slider reaches");
+    harness.get_by_role_and_label(egui::accesskit::Role::CheckBox, "Backdrop").click();
+    harness.run();
+    assert_eq!(ask(&mut harness), surroundings::Change::Turn { rotation, intensity, backdrop: false });
+    for (button, change) in [("None", surroundings::Change::None), ("As in the file", surroundings::Change::Reset)] {
+        harness.get_by_label(button).click();
+        harness.run();
+        assert_eq!(ask(&mut harness), change);
+    }
 }
 
 #[test]

@@ -32,6 +32,49 @@ const WRONG: &[Wrong] = &[
     wrong(r#"{ "version": 1, "objects": §{} }"#, "/objects", "expected a list, found an object"),
     wrong(r#"{ "version": 1, "objects": §null }"#, "/objects", "found null"),
     // The picture.
+    wrong(r#"{ "version": 1, "render": { "environment": §"sunset" } }"#, "/render/environment", "expected \"studio\""),
+    wrong(r#"{ "version": 1, "render": { "environment": §3 } }"#, "/render/environment", "expected an object"),
+    wrong(r#"{ "version": 1, "render": { "environment": §{ "zenith": 1 } } }"#, "/render/environment", "a horizon"),
+    wrong(
+        r#"{ "version": 1, "render": { "environment": §{ "image": "a.hdr", "horizon": 1 } } }"#,
+        "/render/environment",
+        "either an image or the colours",
+    ),
+    wrong(
+        r#"{ "version": 1, "render": { "environment": { "horizon": 1, "intensity": §-1 } } }"#,
+        "/render/environment/intensity",
+        "at least 0",
+    ),
+    wrong(
+        r#"{ "version": 1, "render": { "environment": { "horizon": 1, "intensity": §1e39 } } }"#,
+        "/render/environment/intensity",
+        "too large",
+    ),
+    wrong(
+        r#"{ "version": 1, "render": { "environment": { "horizon": §"blue" } } }"#,
+        "/render/environment/horizon",
+        "is not a colour",
+    ),
+    wrong(
+        r#"{ "version": 1, "render": { "environment": { "horizon": 1, "backdrop": §1 } } }"#,
+        "/render/environment/backdrop",
+        "found a number",
+    ),
+    wrong(
+        r#"{ "version": 1, "render": { "environment": { "image": §"nowhere.hdr" } } }"#,
+        "/render/environment/image",
+        "cannot read the environment \"nowhere.hdr\"",
+    ),
+    wrong(
+        r#"{ "version": 1, "render": { "environment": { "image": §"/etc/hostname" } } }"#,
+        "/render/environment/image",
+        "leaves the scene's folder",
+    ),
+    wrong(
+        r#"{ "version": 1, "render": { "environment": { "image": §"s.json", "rotation": 9 } } }"#,
+        "/render/environment/image",
+        "cannot decode the environment \"s.json\"",
+    ),
     wrong(r#"{ "version": 1, "render": { "width": §0 } }"#, "/render/width", "whole number from 1 to"),
     wrong(r#"{ "version": 1, "render": { "height": §720.5 } }"#, "/render/height", "whole number"),
     wrong(r#"{ "version": 1, "render": { "height": §1e9 } }"#, "/render/height", "32768"),

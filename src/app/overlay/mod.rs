@@ -6,6 +6,7 @@
 mod bars;
 mod controls;
 mod divider;
+mod environment;
 mod figures;
 mod graph;
 mod help;
@@ -30,6 +31,7 @@ use super::lighting::Dial;
 use super::maps::Map;
 use super::methods::{self as seen, Methods};
 use super::scenes::{Report, Wish};
+use super::surroundings::{self, Surroundings};
 use crate::measure::tune::Bound;
 use crate::render::FrameStats;
 use crate::scene::{Camera, Scene};
@@ -84,6 +86,8 @@ pub struct View<'a> {
     pub scenes: Report<'a>,
     /// How each light is turned.
     pub lights: &'a [Dial],
+    /// What surrounds the scene.
+    pub surroundings: &'a Surroundings,
     /// What was pointed at.
     pub inspection: Option<&'a Inspection>,
     /// From where the picture is seen, unless that is changing.
@@ -214,6 +218,8 @@ pub enum Change {
     Light(usize, Dial),
     /// Turn all lights back.
     ResetLights,
+    /// Something about what surrounds the scene.
+    Environment(surroundings::Change),
     /// Tell no longer of what was pointed at.
     CloseInspection,
     /// Open or close the help.
@@ -331,6 +337,7 @@ fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
     section(ui, "View", true, |ui| controls::view(ui, view, changes));
     section(ui, "Time against error", false, |ui| tuning::show(ui, view, changes));
     section(ui, "Lights", false, |ui| lights::show(ui, view, changes));
+    section(ui, "Environment", false, |ui| environment::show(ui, view, changes));
     section(ui, "Scene", false, |ui| scenes::section(ui, view, changes));
     section(ui, "Keys", false, |ui| help::keys(ui, view.labels));
 }

@@ -1,6 +1,7 @@
 //! The desktop's file dialog, asked on a thread of its own.
 
 use crate::scene::FORMATS;
+use crate::scene::environment::SKY_EXTENSIONS;
 use log::{LevelFilter, Log, Metadata, Record};
 use rfd::AsyncFileDialog;
 use std::path::{Path, PathBuf};
@@ -18,7 +19,7 @@ pub enum Answer {
     NoDialog,
 }
 
-/// Asks for a scene file, at first in `folder`, and gives the answer to `then`, on another thread.
+/// Asks for a scene file or a picture of the sky, at first in `folder`, and gives the answer to `then`, on another thread.
 pub fn ask<W: HasWindowHandle + HasDisplayHandle>(
     window: &W,
     folder: Option<&Path>,
@@ -26,7 +27,8 @@ pub fn ask<W: HasWindowHandle + HasDisplayHandle>(
 ) {
     let extensions: Vec<&str> = FORMATS.iter().flat_map(|format| format.extensions).copied().collect();
     let mut dialog = AsyncFileDialog::new().set_title("Open a scene").set_parent(window);
-    dialog = dialog.add_filter("Scenes", &extensions).add_filter("All files", &["*"]);
+    dialog =
+        dialog.add_filter("Scenes", &extensions).add_filter("Skies", &SKY_EXTENSIONS).add_filter("All files", &["*"]);
     if let Some(folder) = folder {
         dialog = dialog.set_directory(folder);
     }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`load`] | a load on a thread of its own |
 //! | [`folder`] | which scene file is meant by a path |
+//! | [`sky`] | skies that are brought to a scene |
 //! | [`watch`] | which of a scene's files have changed |
 //! | [`dialog`] | the desktop's file dialog |
 //! | [`recent`] | the files that were opened last |
@@ -16,6 +17,7 @@ mod folder;
 mod load;
 mod recent;
 mod report;
+mod sky;
 #[cfg(test)]
 mod trials;
 mod watch;
@@ -24,9 +26,11 @@ pub use folder::{NoScene, scene_file};
 pub use load::{Arrival, Failed, Load, Outcome, place_of};
 pub use recent::RecentFiles;
 pub use report::{Failure, Loading, Report};
+pub use sky::SkyArrival;
 
-use crate::scene::{self, Limits, LoadOptions, Progress, Scene, Warning};
+use crate::scene::{self, EnvironmentChoice, Limits, LoadOptions, Progress, Scene, Warning};
 use dialog::Answer;
+use sky::{SkyFile, SkyNote};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -81,6 +85,8 @@ pub enum News {
     Opened(Arrival),
     /// The scene shown is to be replaced by what it has become.
     Reloaded(Arrival),
+    /// A sky was brought to the scene that is shown; or why it was not, in one line.
+    Sky(Result<SkyArrival, String>),
     /// There is nothing to show: the first load of all failed.
     Nothing(Failed),
 }
@@ -89,6 +95,8 @@ enum Note {
     LoadEnded,
     Saw(Sight),
     Answered(Answer),
+    Sky(SkyNote),
+    SkyChanged,
 }
 
 /// What other threads put notes into; waking the event loop is part of it.
@@ -116,6 +124,7 @@ pub struct Scenes {
     /// Milliseconds it took to load.
     load_ms: f64,
     pending: Option<Pending>,
+    sky: SkyFile,
     /// The scene that is shown has changed on disk while another was loaded.
     outdated: bool,
     failure: Option<Failure>,
@@ -147,6 +156,7 @@ impl Scenes {
             place: None,
             load_ms: 0.0,
             pending: None,
+            sky: SkyFile::default(),
             outdated: false,
             failure: None,
             odd: None,
@@ -179,6 +189,9 @@ impl Scenes {
         });
         let is_odd = !arrival.scene.warnings.is_empty() && arrival.scene.warnings != self.dismissed;
         self.odd = is_odd.then(|| Arc::clone(&arrival.scene));
+        if self.file != arrival.file {
+            self.sky.forget();
+        }
         self.file.clone_from(&arrival.file);
         self.place.clone_from(&arrival.place);
         self.load_ms = arrival.load_ms;
@@ -188,10 +201,19 @@ impl Scenes {
         self.watch.files(arrival.files.clone());
     }
 
-    /// Opens a scene file, or the one in a folder; what is shown already is reloaded.
+    /// Opens a scene file, or the one in a folder; what is shown already is reloaded. A picture of the sky is brought to the
+    /// scene that is shown.
     pub fn open(&mut self, path: &Path) {
+        if EnvironmentChoice::is_image(path) {
+            return self.sky.bring(path, &self.options.limits, &self.inbox);
+        }
         let is_shown = self.file.as_deref().is_some_and(|file| is_same(file, path));
         self.load(path, if is_shown { Errand::Reload } else { Errand::Open });
+    }
+
+    /// Follows the sky that was brought no longer.
+    pub fn forget_sky(&mut self) {
+        self.sky.forget();
     }
 
     /// Loads what is shown once more, if it is of a file.
@@ -290,6 +312,11 @@ impl Scenes {
         &self.options.limits
     }
 
+    /// What surrounds the scenes that are loaded.
+    pub fn environment(&self) -> &EnvironmentChoice {
+        &self.options.environment
+    }
+
     /// The files that were opened last.
     pub fn recent(&self) -> &RecentFiles {
         &self.recent
@@ -341,6 +368,12 @@ impl Scenes {
                         return Some(news);
                     }
                 }
+                Note::Sky(note) => {
+                    if let Some(outcome) = self.sky.ended(note, &self.inbox) {
+                        return Some(News::Sky(outcome));
+                    }
+                }
+                Note::SkyChanged => self.sky.again(&self.options.limits, &self.inbox),
                 Note::Saw(Sight::Blind(what)) => self.blind = Some(what),
                 Note::Saw(Sight::Watchful) => self.blind = None,
                 Note::Saw(Sight::Changed) => match &self.pending {

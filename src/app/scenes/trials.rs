@@ -181,6 +181,52 @@ fn a_reload_that_had_to_wait_can_be_stopped() {
     assert!(scenes.cancel() && !scenes.is_loading(), "and that is stopped");
 }
 
+/// A sky of one texel, this bright.
+fn sky(bright: u8) -> Vec<u8> {
+    // Of another size each, as bitmaps are.
+    let comments = "#\n".repeat(bright.into());
+    [format!("#?RADIANCE\n{comments}\n-Y 1 +X 1\n").as_bytes(), &[bright, bright, bright, 128]].concat()
+}
+
+fn brought(scenes: &mut Scenes, woken: &Receiver<()>) -> Result<SkyArrival, String> {
+    match wait(scenes, woken, |_| false) {
+        Some(News::Sky(outcome)) => outcome,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_dropped_sky_is_brought_to_the_scene_and_followed() {
+    let folder = Folder::new();
+    let (file, hdr) = (folder.write("ball.json", ball("1")), folder.write("sky.HDR", sky(64)));
+    let (mut scenes, woken) = scenes();
+    scenes.open(&file);
+    opened(&mut scenes, &woken);
+    scenes.drop_in(hdr.clone());
+    assert!(scenes.open_dropped() && !scenes.is_loading(), "it is no scene");
+    let value = |outcome: Result<SkyArrival, String>| outcome.expect("a sky").image.texels[0][0];
+    let arrival = brought(&mut scenes, &woken).expect("a sky");
+    assert_eq!((&arrival.file, arrival.image.texels[0][0]), (&hdr, 0.25));
+    assert_eq!(scenes.recent().files(), [file.clone()], "only scenes are remembered");
+    folder.write("sky.HDR", sky(128));
+    assert_eq!(value(brought(&mut scenes, &woken)), 0.5);
+    folder.write("sky.HDR", "damaged");
+    let said = brought(&mut scenes, &woken).expect_err("it is no picture");
+    assert!(said.contains("sky.HDR: cannot decode the environment") && !said.contains('\n'), "{said}");
+    folder.write("sky.HDR", sky(32));
+    assert_eq!(value(brought(&mut scenes, &woken)), 0.125, "mended");
+    scenes.open(&folder.path().join("missing.exr"));
+    assert!(brought(&mut scenes, &woken).expect_err("not there").contains("missing.exr: cannot read the environment"));
+    // What is edited still is the scene.
+    folder.write("ball.json", ball("[0.25, 0, 0]"));
+    assert_eq!(red(&reloaded(&mut scenes, &woken)), 0.25);
+    scenes.open(&hdr);
+    scenes.forget_sky();
+    scenes.open(&hdr);
+    assert_eq!(value(brought(&mut scenes, &woken)), 0.125, "once");
+    assert!(scenes.news().is_none());
+}
+
 #[test]
 fn what_is_shown_is_not_opened_but_reloaded() {
     let folder = Folder::new();

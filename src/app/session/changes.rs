@@ -7,6 +7,7 @@ use crate::app::lowering::presets_below;
 use crate::app::methods;
 use crate::app::overlay::Change;
 use crate::app::steering::Steering;
+use crate::app::surroundings;
 use crate::app::survey::{self, End, Survey};
 use crate::measure::tune::{Bound, Task};
 use std::sync::Arc;
@@ -60,11 +61,18 @@ impl Session {
             Change::Scenes(wish) => self.wish(wish),
             Change::Light(light, dial) => {
                 self.lighting.turn(light, dial);
-                self.light(self.lighting.lit(&self.scene));
+                self.relight();
             }
             Change::ResetLights => {
                 self.lighting.reset();
-                self.light(self.lighting.lit(&self.scene));
+                self.relight();
+            }
+            Change::Environment(change) => {
+                if !matches!(change, surroundings::Change::Turn { .. }) {
+                    self.scenes.forget_sky();
+                }
+                self.surroundings.apply(change);
+                self.relight();
             }
             Change::CloseInspection => self.inspection = None,
             Change::ToggleHelp => self.shown = self.shown.with_help_toggled(),

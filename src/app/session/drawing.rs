@@ -95,6 +95,7 @@ impl Session {
             },
             scenes: self.scenes.report(now),
             lights: self.lighting.dials(),
+            surroundings: &self.surroundings,
             inspection: self.inspection.as_ref(),
             stands: self.traced.as_ref().map(|(job, _)| job.camera).filter(|camera| *camera == self.walker.camera()),
             crosshair: self.capture.is_active(),

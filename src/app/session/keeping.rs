@@ -46,6 +46,8 @@ impl Session {
             cameras: self.scene.cameras.clone(),
             turned: self.lighting.dials().iter().filter_map(Dial::turned).collect(),
             limits: self.scenes.limits().clone(),
+            environment: self.surroundings.choice(self.scenes.environment()),
+            environment_turned: self.surroundings.turned(),
         };
         let is_kept = self.posted.as_ref() == Some(job);
         let shot = Shot::new(film, job, *samples, place);

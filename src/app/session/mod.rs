@@ -28,6 +28,7 @@ use crate::app::present::Presenter;
 use crate::app::scenes::Scenes;
 use crate::app::screenshot::Camerawork;
 use crate::app::steering::Steering;
+use crate::app::surroundings::Surroundings;
 use crate::app::survey::Survey;
 use crate::app::tally::Tally;
 use crate::app::tracer::{Job, TracedFrame, Tracer};
@@ -66,6 +67,7 @@ pub struct Session {
     scene: Arc<Scene>,
     lit: Arc<Scene>,
     lighting: Lighting,
+    surroundings: Surroundings,
     inspection: Option<Inspection>,
     settings: Settings,
     walker: Walker,
@@ -165,6 +167,7 @@ impl Session {
             walker,
             scenes,
             lighting: Lighting::of(&scene),
+            surroundings: Surroundings::of(&scene),
             lit: Arc::clone(&scene),
             scene,
             inspection: None,

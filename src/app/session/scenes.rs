@@ -9,8 +9,9 @@ use crate::app::inspection;
 use crate::app::journey::Journey;
 use crate::app::lighting::Lighting;
 use crate::app::lowering::presets_below;
-use crate::app::scenes::{Arrival, News, Wish};
+use crate::app::scenes::{Arrival, News, SkyArrival, Wish};
 use crate::app::steering::Steering;
+use crate::app::surroundings::Surroundings;
 use crate::app::tracer::Job;
 use crate::scene::Scene;
 use glam::DVec2;
@@ -28,6 +29,7 @@ impl Session {
             match news {
                 News::Opened(arrival) => self.enter(arrival),
                 News::Reloaded(arrival) => self.replace_scene(arrival.scene),
+                News::Sky(outcome) => self.bring_sky(outcome),
                 News::Nothing(failed) => return Err(AppError::NoScene(failed)),
             }
         }
@@ -45,6 +47,7 @@ impl Session {
         self.journey = Journey::default();
         self.walker.enter(&scene, camera);
         self.lighting = Lighting::of(&scene);
+        self.surroundings = Surroundings::of(&scene);
         if let Some(size) = size.filter(|_| !self.is_placed) {
             let (width, height) = WindowState::nearest_size(size);
             // The window stays as it is where the system does not let it be resized.
@@ -68,6 +71,7 @@ impl Session {
             self.walker.set_home(moved.camera);
         }
         self.lighting.keep_for(&scene);
+        self.surroundings.keep_for(&scene);
         self.show_scene(scene);
     }
 
@@ -75,9 +79,29 @@ impl Session {
         self.steering = Steering::new(presets_below(&self.settings));
         self.window.set_title(&title(&scene));
         self.inspection = None;
-        self.light(self.lighting.lit(&scene));
+        self.light(self.surroundings.around(self.lighting.lit(&scene)));
         self.walker.lose_footing();
         self.scene = scene;
+    }
+
+    /// Shows a sky that was brought, or tells why there is none.
+    fn bring_sky(&mut self, outcome: Result<SkyArrival, String>) {
+        let now = Instant::now();
+        match outcome {
+            Err(problem) => self.notices.warn(now, format!("No sky: {problem}")),
+            Ok(_) if !self.scenes.has_scene() => self.notices.warn(now, "No sky before the scene is loaded"),
+            Ok(SkyArrival { file, image, warnings }) => {
+                self.notices.tell(now, format!("Sky: {} {}x{}", image.name, image.width, image.height));
+                warnings.into_iter().for_each(|warning| self.notices.warn(now, warning.to_string()));
+                self.surroundings.bring(file, image);
+                self.relight();
+            }
+        }
+    }
+
+    /// Shows the scene in the light and the surroundings that the user chose.
+    pub(super) fn relight(&mut self) {
+        self.light(self.surroundings.around(self.lighting.lit(&self.scene)));
     }
 
     /// Traces `lit` from now on. What was measured of the scene before, or of other lights, says nothing of it.

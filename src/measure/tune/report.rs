@@ -5,13 +5,15 @@ use crate::measure::chart::short;
 use crate::measure::record::settings_json;
 use serde_json::{Map, Value, json};
 
-/// The flags of a trial as they are typed on any command, whatever that starts from.
-fn typed(trial: &Trial) -> String {
-    format!("--preset exact {}", trial.settings.flags()).trim_end().to_owned()
+/// The flags of a trial as they are typed on any command, whatever that starts from; `also` is a flag that all trials had.
+fn typed(trial: &Trial, also: Option<&str>) -> String {
+    let also = also.map_or_else(String::new, |flag| format!("{flag} "));
+    format!("--preset exact {also}{}", trial.settings.flags()).trim_end().to_owned()
 }
 
-/// For people: what was tried, the front as a table, what was chosen and why, and at last the flags.
-pub fn table(found: &Tuning) -> String {
+/// For people: what was tried, the front as a table, what was chosen and why, and at last the flags. `also` is a flag that all
+/// trials had and that is no setting.
+pub fn table(found: &Tuning, also: Option<&str>) -> String {
     let (width, height) = found.size;
     let mut lines = vec![format!(
         "tried {} settings on {} at {width}x{height}:",
@@ -28,12 +30,12 @@ pub fn table(found: &Tuning) -> String {
         if let Some(faster) = found.passed_over.map(|place| &found.trials[place]) {
             lines.push(format!(
                 "{} is {:.1} % faster, which is within the noise of {:.1} %: the simpler is taken",
-                typed(faster),
+                typed(faster, also),
                 100.0 * (chosen.cost() / faster.cost() - 1.0),
                 100.0 * found.noise
             ));
         }
-        lines.push(typed(chosen));
+        lines.push(typed(chosen, also));
     }
     lines.join("\n")
 }
@@ -73,11 +75,11 @@ fn rows(found: &Tuning) -> Vec<String> {
     lines
 }
 
-/// For programs: one object.
-pub fn json(found: &Tuning) -> Value {
+/// For programs: one object. `also` as for [`table`].
+pub fn json(found: &Tuning, also: Option<&str>) -> Value {
     let trial = |trial: &Trial| {
         json!({
-            "flags": typed(trial),
+            "flags": typed(trial, also),
             "error": scores(found, trial),
             "cpu_ms": trial.cpu_ms(),
             // Null where its picture was not judged, because it is no faster than what it approximates.
@@ -89,7 +91,7 @@ pub fn json(found: &Tuning) -> Value {
     let bounds: Map<_, _> = found.bounds.iter().map(|b| (b.metric.name.to_owned(), json!(b.limit))).collect();
     json!({
         "met": chosen.is_some(),
-        "flags": chosen.map(typed),
+        "flags": chosen.map(|trial| typed(trial, also)),
         "settings": chosen.map(|trial| settings_json(&trial.settings)),
         "error": chosen.map(|trial| scores(found, trial)),
         "cpu_ms": chosen.and_then(Trial::cpu_ms),

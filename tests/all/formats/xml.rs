@@ -73,6 +73,21 @@ const WRONG: &[(&str, &str, &str)] = &[
         "/scene/materials/material[@id='a']/@color",
         "#rrggbb",
     ),
+    (
+        "<scene version=\"1\"><render environment=\"§sunset\"/></scene>",
+        "/scene/render/@environment",
+        "unknown environment \"sunset\"",
+    ),
+    (
+        "<scene version=\"1\"><render>§<environment zenith=\"1\"/></render></scene>",
+        "/scene/render/environment",
+        "needs an image or",
+    ),
+    (
+        "<scene version=\"1\"><render><environment image=\"§nowhere.exr\"/></render></scene>",
+        "/scene/render/environment/@image",
+        "cannot read the environment",
+    ),
     ("<scene version=\"1\"><objects §size=\"1\"/></scene>", "/scene/objects/@size", "unexpected attribute \"size\""),
     ("<scene version=\"1\"><objects><§ball/></objects></scene>", "/scene/objects/ball", "unknown object type \"ball\""),
     (

@@ -6,6 +6,7 @@ use crate::scene::desc::map::shortened;
 use exr::block::chunk::CompressedBlock;
 use exr::block::reader::{ChunksReader, Reader};
 use exr::block::{BlockIndex, UncompressedBlock};
+use exr::compression::Compression;
 use exr::meta::BlockDescription;
 use exr::meta::attribute::{EnvironmentMap, SampleType};
 use exr::meta::header::Header;
@@ -64,6 +65,14 @@ pub fn decode(bytes: &[u8], stand_in: f32, allowed: Allowed) -> Result<(Canvas, 
             let block = UncompressedBlock::decompress_chunk(chunk, chunks.meta_data(), false)?;
             layer.paint(&block, &chunks.meta_data().headers[layer.index], &mut canvas)?;
         }
+    }
+    let compression = chunks.headers()[layer.index].compression;
+    if matches!(
+        compression,
+        Compression::PXR24 | Compression::B44 | Compression::B44A | Compression::DWAA(_) | Compression::DWAB(_)
+    ) {
+        // Lossy compression leaves values a little below 0 where there were none.
+        canvas.faults.negative = 0;
     }
     Ok((canvas, Vec::new()))
 }
