@@ -39,6 +39,7 @@ mod scene_files;
 mod scene_loading;
 #[cfg(unix)]
 mod signals;
+mod sky_light;
 mod stress;
 mod subsampling;
 mod surfaces;

@@ -17,7 +17,7 @@ use raywalk::scene::files::Files;
 use raywalk::scene::light::{Falloff, LightKind};
 use raywalk::scene::material::{Alpha, ColorSource, Lookup, Model, Relief, Scaled};
 use raywalk::scene::texture::{Blending, Sampler, Wrap};
-use raywalk::scene::{Camera, Light, LoadOptions, Material, Scene};
+use raywalk::scene::{Camera, FORMATS, Light, LoadOptions, Material, Scene};
 use raywalk::settings::{Settings, Supersample, ToneMap};
 use std::io::Cursor;
 use std::path::Path;
@@ -70,7 +70,8 @@ fn square() -> MeshDesc {
 
 pub(super) fn built(scene: SceneDesc) -> Scene {
     let options = LoadOptions::default();
-    let mut builder = SceneBuilder::new(Path::new("surfaces"), "made", Files::embedded(&[], &options.limits), &options);
+    let mut builder =
+        SceneBuilder::new(Path::new("surfaces"), &FORMATS[0], Files::embedded(&[], &options.limits), &options);
     builder.add(scene, &mut Warnings::default()).unwrap();
     builder.finish().expect("nobody cancels")
 }

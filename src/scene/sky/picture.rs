@@ -48,7 +48,9 @@ impl GlossyLevel {
 pub const LEAST_ROUGHNESS: f32 = 0.1;
 /// Roughness of the blurred maps and their widths in texels: each has a few texels across its kernel.
 const LEVELS: [(f32, u32); 6] = [(LEAST_ROUGHNESS, 256), (0.2, 128), (0.3, 96), (0.45, 64), (0.65, 48), (1.0, 32)];
-/// Directions whose mean is one blurred texel.
+/// From which roughness on all of the sky is summed up, at most how wide: its kernels are far wider than those texels.
+const SUMMED: [(f32, u32); 2] = [(0.6, 64), (0.3, 128)];
+/// Directions whose mean is one texel of a sky that is blurred less.
 const SAMPLES: u32 = 64;
 
 impl Blurred {
@@ -57,7 +59,14 @@ impl Blurred {
         let irradiance = sharp.irradiance();
         let halved = sharp.halved_again_and_again();
         let sizes: Vec<SkyMap<'_>> = std::iter::once(sharp).chain(halved.iter().map(Halved::map)).collect();
-        let level = |(roughness, width)| GlossyLevel { roughness, width, texels: blurred(&sizes, roughness, width) };
+        let blur = |roughness, width| match SUMMED.iter().find(|(least, _)| roughness >= *least) {
+            Some((_, widest)) => {
+                let fits = sizes.iter().find(|size| size.width <= *widest);
+                summed(fits.unwrap_or(&sharp), roughness, width)
+            }
+            None => sampled(&sizes, roughness, width),
+        };
+        let level = |(roughness, width)| GlossyLevel { roughness, width, texels: blur(roughness, width) };
         Self { irradiance, levels: LEVELS.map(level).into() }
     }
 }
@@ -175,7 +184,7 @@ fn taps(roughness: f32) -> Vec<Tap> {
 /// A sky, given at falling sizes, as a surface of some roughness reflects it: each direction of the kernel looks up the size
 /// whose texels cover what it stands for (Křivánek and Colbert, "Real-time shading with filtered importance
 /// sampling", EGSR 2008).
-fn blurred(sizes: &[SkyMap<'_>], roughness: f32, width: u32) -> Box<[[f32; 3]]> {
+fn sampled(sizes: &[SkyMap<'_>], roughness: f32, width: u32) -> Box<[[f32; 3]]> {
     let texels_all_around = f64::from(sizes[0].width) * f64::from(sizes[0].height);
     let size_of = |tap: &Tap| {
         let texels = tap.around / (2.0 * TAU) * texels_all_around;
@@ -194,6 +203,38 @@ fn blurred(sizes: &[SkyMap<'_>], roughness: f32, width: u32) -> Box<[[f32; 3]]> 
             map.radiance(x * across + y * up + z * along) * tap.weight
         };
         (taps.iter().map(seen).sum::<DVec3>() / weight).as_vec3().to_array()
+    };
+    let mean = &mean;
+    let rows = (0..height).into_par_iter();
+    let texels: Vec<[f32; 3]> = rows.flat_map_iter(|row| (0..width).map(move |column| mean(column, row))).collect();
+    texels.into()
+}
+
+/// A sky as a surface of some roughness reflects it, by the sum over all texels.
+fn summed(sky: &SkyMap<'_>, roughness: f32, width: u32) -> Box<[[f32; 3]]> {
+    let alpha2 = f64::from(roughness).powi(4);
+    let size = (sky.width, sky.height);
+    let places = (0..sky.height).flat_map(|row| (0..sky.width).map(move |column| direction(size, column, row)));
+    // Towards the poles the same number of texels covers less.
+    let lights: Vec<(DVec3, f64, DVec3)> = places
+        .zip(sky.texels)
+        .map(|(place, texel)| (place, libm::hypot(place.x, place.z), DVec3::from_array(texel.map(f64::from))))
+        .collect();
+    let height = width / 2;
+    let mean = |column: u32, row: u32| {
+        let ahead = direction((width, height), column, row);
+        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+        for &(place, around, radiance) in &lights {
+            let cosine = ahead.dot(place);
+            if cosine > 0.0 {
+                // The half vector's cosine, squared, is the mean of this one and 1.
+                let spread = 1.0 + (alpha2 - 1.0) * (cosine + 1.0) / 2.0;
+                let weight = around * cosine / (spread * spread);
+                sum += radiance * weight;
+                weights += weight;
+            }
+        }
+        (sum / weights).as_vec3().to_array()
     };
     let mean = &mean;
     let rows = (0..height).into_par_iter();
@@ -239,7 +280,7 @@ mod tests {
     }
 
     /// A rough surface's reflection by a sum over many half vectors, straight ahead.
-    fn summed(sky: impl Fn(DVec3) -> DVec3, around: DVec3, roughness: f64) -> DVec3 {
+    fn reflected(sky: impl Fn(DVec3) -> DVec3, around: DVec3, roughness: f64) -> DVec3 {
         let alpha2 = roughness.powi(4);
         let (x, y) = around.any_orthonormal_pair();
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
@@ -264,7 +305,7 @@ mod tests {
         let image = picture(512, sky);
         for level in &image.blurred().levels {
             for direction in [DVec3::X, DVec3::Y, DVec3::new(0.6, -0.48, -0.64)] {
-                let difference = level.map().radiance(direction) - summed(sky, direction, level.roughness.into());
+                let difference = level.map().radiance(direction) - reflected(sky, direction, level.roughness.into());
                 assert!(difference.abs().max_element() < 0.03, "{} {direction}: {difference}", level.roughness);
             }
         }
