@@ -38,7 +38,7 @@ impl Faults {
 #[derive(Debug)]
 pub struct Canvas {
     source: (u32, u32),
-    /// Texels of the file, across and down, in one of the picture.
+    /// Texels of the file, across and down, in one of the picture: a power of two.
     factor: u32,
     width: u32,
     height: u32,
@@ -70,9 +70,9 @@ impl Canvas {
 
     /// Paints the texel `x`, `y` of the file, which lies in the picture.
     pub fn paint(&mut self, x: u32, y: u32, color: [f32; 3]) {
-        let (factor, share) = (self.factor, ((self.factor * self.factor) as f32).recip());
+        let (shift, share) = (self.factor.ilog2(), ((self.factor * self.factor) as f32).recip());
         let color = color.map(|value| self.sound(value) * share);
-        let texel = &mut self.texels[(y / factor) as usize * self.width as usize + (x / factor) as usize];
+        let texel = &mut self.texels[(y >> shift) as usize * self.width as usize + (x >> shift) as usize];
         texel.iter_mut().zip(color).for_each(|(sum, value)| *sum += value);
     }
 

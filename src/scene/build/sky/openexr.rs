@@ -90,8 +90,8 @@ fn check(header: &Header, allowed: Allowed) -> Result<(), SkyError> {
         }
         BlockDescription::ScanLines => width.saturating_mul(header.compression.scan_lines_per_block() as u64),
     };
-    // A block is in memory as it is stored and as it is decoded, and some decoders have another copy.
-    let bytes = pixels.saturating_mul(header.channels.bytes_per_pixel as u64).saturating_mul(3);
+    // A block is in memory as it is stored, in no more bytes, and as it is decoded.
+    let bytes = pixels.saturating_mul(header.channels.bytes_per_pixel as u64).saturating_mul(2);
     let most = allowed.limits.texture_bytes;
     if bytes > most { Err(SkyError::Effort(most)) } else { Ok(()) }
 }

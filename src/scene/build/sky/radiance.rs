@@ -44,6 +44,8 @@ struct Header {
     /// What values are to be divided by.
     exposure: [f64; 3],
     is_xyz: bool,
+    /// What mantissas are multiplied by, for each exponent.
+    scales: [f64; 256],
     size: Size,
     odd: Vec<String>,
 }
@@ -104,7 +106,7 @@ impl Header {
             // Some writers leave out the blank line before the size.
             if let Some(size) = Size::parse(line) {
                 let after = &bytes[bytes.len().min(LONGEST_HEADER) - rest.len()..];
-                return Ok((Self { exposure, is_xyz, size, odd }, after));
+                return Ok((Self { exposure, is_xyz, scales: scales(), size, odd }, after));
             }
             if is_past_blank {
                 let line = shortened(line);
@@ -137,10 +139,7 @@ impl Header {
 
     /// What a pixel means.
     fn radiance(&self, [red, green, blue, exponent]: Pixel) -> [f32; 3] {
-        if exponent == 0 {
-            return [0.0; 3];
-        }
-        let scale = libm::ldexp(1.0, i32::from(exponent) - (128 + 8));
+        let scale = self.scales[usize::from(exponent)];
         let mut color = [red, green, blue].map(|mantissa| f64::from(mantissa) * scale);
         if self.is_xyz {
             let dot = |row: [f32; 3]| row.iter().zip(color).map(|(a, b)| f64::from(*a) * b).sum::<f64>();
@@ -149,6 +148,15 @@ impl Header {
         }
         [0, 1, 2].map(|channel| (color[channel] / self.exposure[channel]) as f32)
     }
+}
+
+/// What mantissas are multiplied by, for each exponent; 0 means black.
+fn scales() -> [f64; 256] {
+    let mut scales = [0.0; 256];
+    for (exponent, scale) in (1..).zip(&mut scales[1..]) {
+        *scale = libm::ldexp(1.0, exponent - (128 + 8));
+    }
+    scales
 }
 
 /// A factor that values were multiplied by.
