@@ -436,8 +436,8 @@ fn notices_are_read_even_when_all_else_is_hidden() {
 fn what_the_picture_is_stands_below_the_status_line() {
     let sixteen = Settings { supersample: Supersample::Grid { side: 4 }, ..Settings::exact() };
     for (showing, settings, words) in [
-        (Showing::AsSet, Settings::exact(), "as set: 1 sample"),
-        (Showing::AsSet, sixteen.clone(), "as set: supersample 16"),
+        (Showing::AsSet, Settings::exact(), "full quality, 1 sample"),
+        (Showing::AsSet, sixteen.clone(), "full quality, supersample 16"),
         (Showing::Moving { preset: Some("fast"), scale: 0.7 }, sixteen, "moving: fast, scale 0.7"),
         (Showing::Moving { preset: Some("balanced"), scale: 1.0 }, Settings::exact(), "moving: balanced"),
         (Showing::Moving { preset: None, scale: 0.5 }, Settings::fast(), "moving: scale 0.5"),
@@ -482,9 +482,9 @@ fn tuning(survey: Option<Survey>) -> Harness<'static, Panel> {
     let mut panel = Panel::new();
     panel.survey = survey;
     let mut harness = panel.harness();
-    assert!(harness.query_by_label("Measure front").is_none(), "closed at first");
+    assert!(harness.query_by_label("Plot speed against error").is_none(), "closed at first");
     // What is above is closed, so that there is room.
-    for section in ["Settings", "Last frame", "What the methods do", "Time against error"] {
+    for section in ["Settings", "Last frame", "Compare and debug views", "Auto-tune"] {
         harness.get_by_label(section).click();
         harness.run();
     }
@@ -504,7 +504,7 @@ fn a_search_is_asked_for_with_a_bound_and_without() {
     let mut harness = tuning(None);
     harness.get_by_label("Tune for this view").click();
     harness.run();
-    harness.get_by_label("Measure front").click();
+    harness.get_by_label("Plot speed against error").click();
     harness.run();
     let flip = metric("flip").expect("listed");
     let expected = [Change::Search(harness.state().bound), Change::Search(Bound::none(flip))];
@@ -553,7 +553,7 @@ fn what_was_found_can_be_applied_and_keeps_what_is_the_windows_own() {
 #[test]
 fn a_front_without_a_find_says_so() {
     let mut harness = tuning(Some(survey(1.0, Some(End::Nothing))));
-    harness.get_by_label("nothing keeps the bound");
+    harness.get_by_label("No settings met this limit");
     harness.state_mut().settings = Settings { stride: 2, ..Settings::balanced() };
     harness.run();
     harness.get_by_label("the settings on display are not measured");
@@ -670,7 +670,7 @@ fn every_map_can_be_chosen_and_the_status_line_says_which() {
         harness.get_by_role_and_label(egui::accesskit::Role::Button, map.name()).click();
         harness.run();
         assert_eq!(harness.state().changes, [Change::Methods(methods::Change::Map(map))]);
-        harness.get_by_label(&format!("map of {}, as set: 1 sample", map.name()));
+        harness.get_by_label(&format!("map of {}, full quality, 1 sample", map.name()));
     }
 }
 
