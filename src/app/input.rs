@@ -333,6 +333,7 @@ mod tests {
         assert_eq!(keys.press(code(KeyCode::Tab), false), Some(Command::TogglePanel));
         assert_eq!(keys.press(code(KeyCode::Tab), true), None);
         assert_eq!(keys.press(code(KeyCode::KeyQ), false), None);
+        keys.release(code(KeyCode::KeyQ));
         keys.set_ctrl(true);
         assert_eq!(keys.press(code(KeyCode::KeyQ), false), Some(Command::Quit));
         keys.press(code(KeyCode::KeyC), false);

@@ -10,16 +10,17 @@ use raywalk::app::labels::Labels;
 use raywalk::app::lighting::Dial;
 use raywalk::app::maps::{Class, Key, Legend, Map, Scale};
 use raywalk::app::methods::{self, Methods, Side};
-use raywalk::app::overlay::{self, Change, Notices, Showing, Shown, Tuning, View, theme};
-use raywalk::app::scenes::{Failure, Loading, Report, Wish};
+use raywalk::app::overlay::{self, Change, Notices, Panel as PanelState, Showing, Shown, Tuning, View, theme};
+use raywalk::app::scenes::{Failure, Loading, Oddities, Report, Wish};
 use raywalk::app::survey::{End, Point, Survey};
 use raywalk::geometry::{Aabb, Geometry};
 use raywalk::math::simd;
 use raywalk::measure::metric::{METRICS, Score, metric};
 use raywalk::measure::tune::Bound;
 use raywalk::render::FrameStats;
+use raywalk::scene::error::Place;
 use raywalk::scene::progress::Step;
-use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene};
+use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene, Warning};
 use raywalk::settings::{Kind, PRESETS, ROWS, Settings, Supersample, row};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -41,10 +42,15 @@ fn scene() -> Scene {
         headlight: true,
         cameras: vec![named("default"), named("door")],
         render: RenderDefaults::default(),
+        on_foot: false,
+        environment: None,
         auto_exposure: 0.0,
         warnings: Vec::new(),
     }
 }
+
+/// Width of the window in points: there is room for the panel beside the picture.
+const WIDTH: f32 = 1280.0;
 
 /// An overlay with what it shows, and everything that was asked for.
 struct Panel {
@@ -60,6 +66,7 @@ struct Panel {
     lights: Vec<Dial>,
     inspection: Option<Inspection>,
     notices: Notices,
+    hint: f32,
     labels: Labels,
     methods: Methods,
     changes: Vec<Change>,
@@ -68,7 +75,7 @@ struct Panel {
 impl Panel {
     fn new() -> Self {
         let settings = Settings::balanced();
-        let shown = Shown::default();
+        let shown = Shown { panel: PanelState::Open, ..Shown::default() };
         let (history, showing) = (History::default(), Showing::AsSet);
         let bound = Bound::parse("flip=0.01").expect("right");
         let methods = Methods::new(&settings);
@@ -85,6 +92,7 @@ impl Panel {
             lights: Vec::new(),
             inspection: None,
             notices: Notices::default(),
+            hint: 0.0,
             labels: Labels::default(),
             methods,
             changes: Vec::new(),
@@ -122,6 +130,7 @@ impl Panel {
             stands: Some(Camera::default()),
             crosshair: true,
             notices: self.notices.current(),
+            hint: self.hint,
             labels: &self.labels,
             activity: None,
         };
@@ -140,7 +149,7 @@ impl Panel {
 
     fn harness(self) -> Harness<'static, Self> {
         Harness::builder()
-            .with_size(egui::vec2(800.0, 1400.0))
+            .with_size(egui::vec2(WIDTH, 1400.0))
             .with_context_setup(theme::apply)
             .build_ui_state(|ui, panel: &mut Self| panel.show(ui), self)
     }
@@ -184,7 +193,7 @@ fn every_setting_tells_its_help_where_it_is_pointed_at() {
 #[test]
 fn the_help_names_every_key_setting_value_and_preset() {
     let mut panel = Panel::new();
-    (panel.shown.panel, panel.shown.help) = (false, true);
+    (panel.shown.panel, panel.shown.help) = (PanelState::Closed, true);
     let mut harness = panel.harness();
     for (keys, what) in HELP {
         assert!(harness.query_all_by_label(keys).count() > 0 && harness.query_all_by_label(what).count() > 0, "{keys}");
@@ -233,7 +242,7 @@ fn the_help_fits_in_small_windows() {
 fn the_keys_can_be_read_in_narrow_windows_and_at_every_size_of_the_text() {
     for (size, scale) in [((640.0, 420.0), 1.0), ((640.0, 420.0), 2.0), ((640.0, 420.0), 3.0), ((320.0, 400.0), 1.0)] {
         let mut panel = Panel::new();
-        (panel.shown.panel, panel.shown.help) = (false, true);
+        (panel.shown.panel, panel.shown.help) = (PanelState::Closed, true);
         let size = egui::Vec2::from(size) / scale;
         let mut harness = Harness::builder()
             .with_size(size)
@@ -260,14 +269,16 @@ fn the_keys_can_be_read_in_narrow_windows_and_at_every_size_of_the_text() {
 #[test]
 fn notices_are_whole_however_many_there_are() {
     let mut harness = Panel::new().harness();
-    let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(800.0, 1400.0));
+    let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(WIDTH, 1400.0));
+    // The picture is right of the panel.
+    let middle = 0.5 * (380.0 + WIDTH);
     let mut lowest = f32::NAN;
     for text in ["There is no bookmark 5", "There is no bookmark 6, and that takes more words than the first"] {
         harness.state_mut().notices.warn(Instant::now(), text);
         // One drawing, after which nothing else happens.
         harness.step();
         let place = harness.get_by_label(text).rect();
-        assert!(window.contains_rect(place) && (place.center().x - 400.0).abs() < 300.0, "{text}: {place:?}");
+        assert!(window.contains_rect(place) && (place.center().x - middle).abs() < 300.0, "{text}: {place:?}");
         assert!(lowest.is_nan() || (place.bottom() - lowest).abs() < 1.0, "{text}: {place:?}, the first at {lowest}");
         lowest = place.bottom();
     }
@@ -388,19 +399,115 @@ fn cameras_speed_and_view_answer() {
 }
 
 #[test]
-fn the_status_line_says_rate_time_and_size() {
+fn the_status_line_says_rate_preset_way_and_speed_and_the_panel_time_and_size() {
     let mut panel = Panel::new();
     let start = Instant::now();
     for i in 0..100 {
         panel.history.record(start + Duration::from_millis(16) * i, 14.2);
     }
-    panel.shown.panel = false;
     let mut harness = panel.harness();
-    harness.get_by_label("62 fps | 14.2 ms | 1280x720");
+    harness.get_by_label("62 fps · balanced · fly · 1.5 m/s");
+    harness.get_by_label("14.2 ms · 1280x720");
+    harness.state_mut().shown.panel = PanelState::Closed;
+    harness.run();
+    harness.get_by_label("62 fps · balanced · fly · 1.5 m/s");
     assert!(harness.query_by_label(ROWS[0].name).is_none(), "the panel is closed");
     harness.state_mut().shown.overlay = false;
     harness.run();
-    assert!(harness.query_by_label_contains("1280x720").is_none(), "everything is hidden");
+    assert!(harness.query_by_label_contains("62 fps").is_none(), "everything is hidden");
+}
+
+/// A panel in a window of a size in pixels, and of some scale.
+fn in_window(panel: Panel, size: [f32; 2], scale: f32) -> Harness<'static, Panel> {
+    let mut harness = Harness::builder()
+        .with_size(egui::Vec2::from(size) / scale)
+        .with_pixels_per_point(scale)
+        .with_context_setup(theme::apply)
+        .build_ui_state(|ui, panel: &mut Panel| panel.show(ui), panel);
+    harness.run();
+    harness
+}
+
+#[test]
+fn the_status_line_is_never_cut_off() {
+    for (size, scale) in
+        [([640.0, 480.0], 1.0), ([640.0, 480.0], 2.0), ([3840.0, 2160.0], 1.0), ([3840.0, 2160.0], 2.0)]
+    {
+        for state in [PanelState::Closed, PanelState::Open, PanelState::OverPicture] {
+            let mut panel = Panel::new();
+            panel.shown.panel = state;
+            (panel.methods.split.is_on, panel.methods.map) = (true, Map::Decisions);
+            let harness = in_window(panel, size, scale);
+            let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::Vec2::from(size) / scale);
+            let words = "map of decisions, two settings side by side, left full quality, 1 sample";
+            for label in ["tracing · balanced · fly · 1.5 m/s", words, "Help"] {
+                let place = harness.get_all_by_label(label).next().expect("it is there").rect();
+                assert!(window.contains_rect(place), "{label}: {place:?} in {size:?} at {scale}, {state:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_panel_is_beside_the_picture_where_it_takes_30_percent_of_the_width_at_most() {
+    for (size, scale, is_seen) in [
+        ([1280.0, 720.0], 1.0, true),
+        ([2560.0, 1440.0], 2.0, true),
+        ([960.0, 600.0], 1.0, true),
+        ([640.0, 480.0], 1.0, false),
+        ([1280.0, 720.0], 2.0, false),
+    ] {
+        let mut harness = in_window(Panel::new(), size, scale);
+        let name = "Compare and debug views";
+        let section = harness.query_by_label(name).map(|section| section.rect());
+        assert_eq!(section.is_some(), is_seen, "{size:?} at {scale}");
+        if let Some(section) = section {
+            assert!(section.right() <= 0.3 * size[0] / scale, "{section:?} in {size:?} at {scale}");
+        }
+        harness.state_mut().shown.panel = PanelState::OverPicture;
+        harness.run();
+        assert!(harness.query_by_label(name).is_some(), "it was asked for");
+    }
+}
+
+#[test]
+fn what_lies_over_the_picture_is_in_its_middle_beside_the_panel() {
+    let mut panel = Panel::new();
+    panel.hint = 1.0;
+    let mut harness = in_window(panel, [1280.0, 720.0], 1.0);
+    let middle = |harness: &Harness<'_, Panel>| harness.get_by_label_contains("Click to look").rect().center().x;
+    assert!((middle(&harness) - 0.5 * (380.0 + 1280.0)).abs() < 2.0, "{}", middle(&harness));
+    harness.state_mut().shown.panel = PanelState::Closed;
+    harness.run();
+    assert!((middle(&harness) - 640.0).abs() < 2.0, "{}", middle(&harness));
+    harness.state_mut().hint = 0.0;
+    harness.run();
+    assert!(harness.query_by_label_contains("Click to look").is_none());
+    (harness.state_mut().hint, harness.state_mut().shown.overlay) = (1.0, false);
+    harness.run();
+    assert!(harness.query_by_label_contains("Click to look").is_none(), "everything is hidden");
+}
+
+#[test]
+fn warnings_are_one_line_and_a_list_with_short_paths() {
+    let mut odd = scene();
+    let place = Place { file: "models/town/town.obj".into(), line_column: Some((3, 1)), pointer: String::new() };
+    let message = "cannot read image \"models/town/maps/wall.png\"; a placeholder is shown".to_owned();
+    odd.warnings = vec![Warning { place, message }; 7];
+    let odd: &'static Scene = Box::leak(Box::new(odd));
+    let mut panel = Panel::new();
+    panel.report.folder = Some(std::path::Path::new("models/town"));
+    panel.report.odd = Some(Oddities { scene: odd, is_list: false });
+    let mut harness = in_window(panel, [640.0, 480.0], 1.0);
+    let line = harness.get_by_label("7 textures missing ·").rect();
+    assert!(line.height() < 24.0, "{line:?}");
+    assert!(harness.query_by_label_contains("wall.png").is_none());
+    assert_eq!(wish(&mut harness, "Details"), Some(Wish::ToggleWarnings));
+    harness.state_mut().report.odd = Some(Oddities { scene: odd, is_list: true });
+    harness.run();
+    let listed = "town.obj:3:1: cannot read image \"maps/wall.png\"; a placeholder is shown";
+    assert_eq!(harness.query_all_by_label(listed).count(), 7);
+    assert_eq!(wish(&mut harness, "Dismiss"), Some(Wish::DismissWarnings));
 }
 
 #[test]
@@ -448,7 +555,7 @@ fn what_the_picture_is_stands_below_the_status_line() {
         (Showing::ExactSoon, Settings::fast(), "tracing the exact picture"),
     ] {
         let mut panel = Panel::new();
-        (panel.showing, panel.settings, panel.shown.panel) = (showing, settings, false);
+        (panel.showing, panel.settings, panel.shown.panel) = (showing, settings, PanelState::Closed);
         panel.harness().get_by_label(words);
     }
 }
@@ -687,7 +794,7 @@ fn a_legend_says_what_colors_mean_and_goes_with_the_overlay() {
         let mut panel = Panel::new();
         panel.methods.map = map;
         panel.methods.legend = Some(Legend { map, key });
-        panel.shown.panel = false;
+        panel.shown.panel = PanelState::Closed;
         let mut harness = panel.harness();
         for words in words {
             harness.get_by_label(words);
@@ -729,17 +836,26 @@ fn two_sides_are_edited_apart_and_told_at_the_divider() {
 fn the_divider_is_dragged_with_the_pointer() {
     let mut panel = Panel::new();
     panel.methods.split.is_on = true;
-    panel.shown.panel = false;
+    panel.shown.panel = PanelState::Closed;
     let mut harness = panel.harness();
     harness.run();
-    harness.drag_at(egui::pos2(400.0, 900.0));
-    harness.run();
-    harness.hover_at(egui::pos2(560.0, 940.0));
-    harness.run();
-    harness.drop_at(egui::pos2(560.0, 940.0));
-    harness.run();
-    let share = harness.state().methods.split.share();
+    let mut drag = |harness: &mut Harness<'_, Panel>, from: f32, to: f32| {
+        harness.drag_at(egui::pos2(from, 900.0));
+        harness.run();
+        harness.hover_at(egui::pos2(to, 940.0));
+        harness.run();
+        harness.drop_at(egui::pos2(to, 940.0));
+        harness.run();
+        harness.state().methods.split.share()
+    };
+    let share = drag(&mut harness, 0.5 * WIDTH, 0.7 * WIDTH);
     assert!((share - 0.7).abs() < 0.005, "{share}");
+    // Beside the panel it is a share of what the picture has.
+    harness.state_mut().shown.panel = PanelState::Open;
+    harness.run();
+    let at = |share: f32| 380.0 + share * (WIDTH - 380.0);
+    let share = drag(&mut harness, at(0.7), at(0.25));
+    assert!((share - 0.25).abs() < 0.005, "{share}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::{Panel, Shown};
 use crate::app::present::PixelRect;
 
 /// Usual width of the panel in points, edges included.
-const USUAL: f32 = 360.0;
+const USUAL: f32 = 380.0;
 /// A panel narrower than this cannot be read.
 const LEAST: f32 = 280.0;
 /// The panel's greatest share of the window's width.
@@ -43,8 +43,8 @@ mod tests {
                 }
             }
         }
-        assert_eq!(panel_pixels(1280, 1.0), Some(360));
-        assert_eq!(panel_pixels(2560, 2.0), Some(720));
+        assert_eq!(panel_pixels(1280, 1.0), Some(380));
+        assert_eq!(panel_pixels(2560, 2.0), Some(760));
         assert_eq!(panel_pixels(640, 1.0), None);
         assert_eq!(panel_pixels(1280, 2.0), None, "640 points");
     }
@@ -53,7 +53,7 @@ mod tests {
     fn the_picture_has_what_the_panel_leaves() {
         let shown = |panel, overlay| Shown { overlay, panel, help: false };
         let area = |size, panel, overlay| free_area(size, 1.0, shown(panel, overlay));
-        assert_eq!(area((1280, 720), Panel::Open, true), [360, 0, 920, 720]);
+        assert_eq!(area((1280, 720), Panel::Open, true), [380, 0, 900, 720]);
         assert_eq!(area((1280, 720), Panel::Closed, true), [0, 0, 1280, 720]);
         assert_eq!(area((1280, 720), Panel::Open, false), [0, 0, 1280, 720], "everything is hidden");
         assert_eq!(area((640, 480), Panel::Open, true), [0, 0, 640, 480], "it is collapsed");

@@ -40,7 +40,7 @@ use crate::settings::{PRESETS, Preset, Settings, row};
 use egui::{CollapsingHeader, LayerId, Rect, RichText, Ui};
 
 /// Width of the contents of a panel over the picture in points.
-const WIDTH: f32 = 336.0;
+const WIDTH: f32 = 360.0;
 /// Distance from the window's edge in points.
 const MARGIN: f32 = 8.0;
 /// Between the edge of the panel and what it holds, in points.

@@ -111,15 +111,13 @@ pub fn show(ui: &Ui, notices: &[Notice], hint: Option<(&str, f32)>, free: Rect) 
     let area = Area::new(id).constrain_to(free).anchor(Align2::CENTER_BOTTOM, [0.0, -MARGIN]);
     placing::show(ui.ctx(), id, area.order(egui::Order::Foreground).interactable(false), |ui| {
         ui.set_max_width(width);
-        ui.vertical_centered(|ui| {
-            for notice in notices {
-                line(ui, &notice.text, color(notice.tone));
-            }
-            if let Some((hint, opacity)) = hint {
-                ui.set_opacity(opacity);
-                line(ui, hint, theme::STRONG);
-            }
-        });
+        for notice in notices {
+            line(ui, &notice.text, color(notice.tone));
+        }
+        if let Some((hint, opacity)) = hint {
+            ui.set_opacity(opacity);
+            line(ui, hint, theme::STRONG);
+        }
     });
 }
 

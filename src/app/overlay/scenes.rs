@@ -30,7 +30,13 @@ pub fn boxes(ui: &Ui, view: &View<'_>, free: Rect, changes: &mut Vec<Change>) ->
     let area = egui::Area::new(id).constrain_to(free);
     let area = area.anchor(Align2::CENTER_BOTTOM, egui::vec2(0.0, -ABOVE_NOTICES));
     placing::show(ui.ctx(), id, area, |ui| {
-        ui.set_width(width);
+        let is_line_alone = loading.is_none() && failure.is_none() && hint.is_none();
+        if is_line_alone && odd.is_some_and(|odd| !odd.is_list) {
+            // It is as wide as its words, in the middle.
+            ui.set_max_width(width);
+        } else {
+            ui.set_width(width);
+        }
         match odd {
             Some(Oddities { scene, is_list: true }) => {
                 in_box(ui, theme::WARNING, |ui| warnings_box(ui, scene, *folder, SHARE * free.height(), changes));
@@ -97,16 +103,15 @@ fn failure_box(ui: &mut Ui, failure: &Failure, changes: &mut Vec<Change>) {
 
 /// What warnings are about, in one line, and the switch of their list.
 fn warnings_line(ui: &mut Ui, scene: &Scene, changes: &mut Vec<Change>) {
-    ui.vertical_centered(|ui| {
-        let frame = egui::Frame::new().fill(theme::BACKGROUND).stroke(egui::Stroke::new(1.0, theme::WARNING));
-        frame.inner_margin(6.0).corner_radius(6.0).show(ui, |ui| {
-            ui.horizontal(|ui| {
-                let summary = warnings::summary(&scene.warnings);
-                ui.label(RichText::new(format!("{summary} ·")).color(theme::WARNING));
-                if ui.link("Details").on_hover_text("F2; the panel lists them, too").clicked() {
-                    changes.push(Change::Scenes(Wish::ToggleWarnings));
-                }
-            });
+    let frame = egui::Frame::new().fill(theme::BACKGROUND).stroke(egui::Stroke::new(1.0, theme::WARNING));
+    frame.inner_margin(8.0).corner_radius(6.0).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let summary = warnings::summary(&scene.warnings);
+            ui.label(RichText::new(format!("{summary} ·")).color(theme::WARNING));
+            if ui.link("Details").on_hover_text("F2; the panel lists them, too").clicked() {
+                changes.push(Change::Scenes(Wish::ToggleWarnings));
+            }
         });
     });
 }
