@@ -523,7 +523,7 @@ fn walking_is_switched_and_keys_have_the_users_names() {
         harness.get_by_label(section).click();
         harness.run();
     }
-    harness.get_by_label("Z A S D");
+    harness.get_by_label("Z A S D, arrows");
 }
 
 #[test]
@@ -839,7 +839,7 @@ fn the_divider_is_dragged_with_the_pointer() {
     panel.shown.panel = PanelState::Closed;
     let mut harness = panel.harness();
     harness.run();
-    let mut drag = |harness: &mut Harness<'_, Panel>, from: f32, to: f32| {
+    let drag = |harness: &mut Harness<'_, Panel>, from: f32, to: f32| {
         harness.drag_at(egui::pos2(from, 900.0));
         harness.run();
         harness.hover_at(egui::pos2(to, 940.0));
