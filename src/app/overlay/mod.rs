@@ -266,7 +266,8 @@ pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
     let free = window.with_min_x(window.left() + left as f32 / pixels_per_point);
     above.extend(scenes::boxes(ui, view, free, &mut changes));
     let hint = hint::text(view.labels);
-    let hint = (view.hint > 0.0 && shown.overlay).then_some((hint.as_str(), view.hint));
+    // Two sides have their own words there.
+    let hint = (view.hint > 0.0 && shown.overlay && !view.methods.split.is_on).then_some((hint.as_str(), view.hint));
     // They answer what was just asked for: whoever hides the rest wants to know all the same.
     notice::show(ui, view.notices, hint, free);
     if !shown.overlay {
