@@ -1,26 +1,26 @@
 //! The overlay, driven like a user would: no window, no GPU.
 
+mod methods;
+mod tuning;
+mod window;
+
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use raywalk::app::exam::{Exam, RowCost, Subject};
 use raywalk::app::history::History;
 use raywalk::app::input::HELP;
 use raywalk::app::inspection::Inspection;
 use raywalk::app::labels::Labels;
 use raywalk::app::lighting::Dial;
-use raywalk::app::maps::{Class, Key, Legend, Map, Scale};
-use raywalk::app::methods::{self, Methods, Side};
+use raywalk::app::methods::Methods;
 use raywalk::app::overlay::{self, Change, Notices, Panel as PanelState, Showing, Shown, Tuning, View, theme};
-use raywalk::app::scenes::{Failure, Loading, Oddities, Report, Wish};
-use raywalk::app::survey::{End, Point, Survey};
+use raywalk::app::scenes::{Failure, Loading, Report, Wish};
+use raywalk::app::survey::Survey;
 use raywalk::geometry::{Aabb, Geometry};
 use raywalk::math::simd;
-use raywalk::measure::metric::{METRICS, Score, metric};
 use raywalk::measure::tune::Bound;
 use raywalk::render::FrameStats;
-use raywalk::scene::error::Place;
 use raywalk::scene::progress::Step;
-use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene, Warning};
+use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene};
 use raywalk::settings::{Kind, PRESETS, ROWS, Settings, Supersample, row};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -417,99 +417,6 @@ fn the_status_line_says_rate_preset_way_and_speed_and_the_panel_time_and_size() 
     assert!(harness.query_by_label_contains("62 fps").is_none(), "everything is hidden");
 }
 
-/// A panel in a window of a size in pixels, and of some scale.
-fn in_window(panel: Panel, size: [f32; 2], scale: f32) -> Harness<'static, Panel> {
-    let mut harness = Harness::builder()
-        .with_size(egui::Vec2::from(size) / scale)
-        .with_pixels_per_point(scale)
-        .with_context_setup(theme::apply)
-        .build_ui_state(|ui, panel: &mut Panel| panel.show(ui), panel);
-    harness.run();
-    harness
-}
-
-#[test]
-fn the_status_line_is_never_cut_off() {
-    for (size, scale) in
-        [([640.0, 480.0], 1.0), ([640.0, 480.0], 2.0), ([3840.0, 2160.0], 1.0), ([3840.0, 2160.0], 2.0)]
-    {
-        for state in [PanelState::Closed, PanelState::Open, PanelState::OverPicture] {
-            let mut panel = Panel::new();
-            panel.shown.panel = state;
-            (panel.methods.split.is_on, panel.methods.map) = (true, Map::Decisions);
-            let harness = in_window(panel, size, scale);
-            let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::Vec2::from(size) / scale);
-            let words = "map of decisions, two settings side by side, left full quality, 1 sample";
-            for label in ["tracing · balanced · fly · 1.5 m/s", words, "Help"] {
-                let place = harness.get_all_by_label(label).next().expect("it is there").rect();
-                assert!(window.contains_rect(place), "{label}: {place:?} in {size:?} at {scale}, {state:?}");
-            }
-        }
-    }
-}
-
-#[test]
-fn the_panel_is_beside_the_picture_where_it_takes_30_percent_of_the_width_at_most() {
-    for (size, scale, is_seen) in [
-        ([1280.0, 720.0], 1.0, true),
-        ([2560.0, 1440.0], 2.0, true),
-        ([960.0, 600.0], 1.0, true),
-        ([640.0, 480.0], 1.0, false),
-        ([1280.0, 720.0], 2.0, false),
-    ] {
-        let mut harness = in_window(Panel::new(), size, scale);
-        let name = "Compare and debug views";
-        let section = harness.query_by_label(name).map(|section| section.rect());
-        assert_eq!(section.is_some(), is_seen, "{size:?} at {scale}");
-        if let Some(section) = section {
-            assert!(section.right() <= 0.3 * size[0] / scale, "{section:?} in {size:?} at {scale}");
-        }
-        harness.state_mut().shown.panel = PanelState::OverPicture;
-        harness.run();
-        assert!(harness.query_by_label(name).is_some(), "it was asked for");
-    }
-}
-
-#[test]
-fn what_lies_over_the_picture_is_in_its_middle_beside_the_panel() {
-    let mut panel = Panel::new();
-    panel.hint = 1.0;
-    let mut harness = in_window(panel, [1280.0, 720.0], 1.0);
-    let middle = |harness: &Harness<'_, Panel>| harness.get_by_label_contains("Click to look").rect().center().x;
-    assert!((middle(&harness) - 0.5 * (380.0 + 1280.0)).abs() < 2.0, "{}", middle(&harness));
-    harness.state_mut().shown.panel = PanelState::Closed;
-    harness.run();
-    assert!((middle(&harness) - 640.0).abs() < 2.0, "{}", middle(&harness));
-    harness.state_mut().hint = 0.0;
-    harness.run();
-    assert!(harness.query_by_label_contains("Click to look").is_none());
-    (harness.state_mut().hint, harness.state_mut().shown.overlay) = (1.0, false);
-    harness.run();
-    assert!(harness.query_by_label_contains("Click to look").is_none(), "everything is hidden");
-}
-
-#[test]
-fn warnings_are_one_line_and_a_list_with_short_paths() {
-    let mut odd = scene();
-    let place = Place { file: "models/town/town.obj".into(), line_column: Some((3, 1)), pointer: String::new() };
-    let message = "cannot read image \"models/town/maps/wall.png\"; a placeholder is shown".to_owned();
-    odd.warnings = vec![Warning { place, message }; 7];
-    let odd: &'static Scene = Box::leak(Box::new(odd));
-    let mut panel = Panel::new();
-    panel.report.folder = Some(std::path::Path::new("models/town"));
-    panel.report.odd = Some(Oddities { scene: odd, is_list: false });
-    let mut harness = in_window(panel, [640.0, 480.0], 1.0);
-    let line = harness.get_by_label("7 textures missing ·").rect();
-    assert!(line.height() < 24.0, "{line:?}");
-    assert!(harness.query_by_label_contains("wall.png").is_none());
-    assert_eq!(wish(&mut harness, "Details"), Some(Wish::ToggleWarnings));
-    harness.state_mut().report.odd = Some(Oddities { scene: odd, is_list: true });
-    harness.run();
-    let listed = "town.obj:3:1: cannot read image \"maps/wall.png\"; a placeholder is shown";
-    assert_eq!(harness.query_all_by_label(listed).count(), 7);
-    assert_eq!(wish(&mut harness, "Dismiss"), Some(Wish::DismissWarnings));
-}
-
 #[test]
 fn walking_is_switched_and_keys_have_the_users_names() {
     let mut panel = Panel::new();
@@ -582,88 +489,6 @@ fn an_approximate_value_is_told_from_an_exact_one() {
     (visibility.set)(&mut harness.state_mut().settings, "subsample").expect("a listed value is allowed");
     harness.run();
     assert_eq!(count(&harness), before + 1);
-}
-
-/// A panel with its section on time and error open.
-fn tuning(survey: Option<Survey>) -> Harness<'static, Panel> {
-    let mut panel = Panel::new();
-    panel.survey = survey;
-    let mut harness = panel.harness();
-    assert!(harness.query_by_label("Plot speed against error").is_none(), "closed at first");
-    // What is above is closed, so that there is room.
-    for section in ["Settings", "Last frame", "Compare and debug views", "Auto-tune"] {
-        harness.get_by_label(section).click();
-        harness.run();
-    }
-    harness
-}
-
-fn survey(share: f64, end: Option<End>) -> Survey {
-    let point = |settings, cpu_ms, error| Point { settings, cpu_ms, score: error, error };
-    let mut survey = Survey::new(Camera::default(), Bound::parse("flip=0.05").expect("right"));
-    (survey.share, survey.end) = (share, end);
-    survey.points = vec![point(Settings::exact(), 80.0, 0.0), point(Settings::fast(), 40.0, 0.04)];
-    survey
-}
-
-#[test]
-fn a_search_is_asked_for_with_a_bound_and_without() {
-    let mut harness = tuning(None);
-    harness.get_by_label("Tune for this view").click();
-    harness.run();
-    harness.get_by_label("Plot speed against error").click();
-    harness.run();
-    let flip = metric("flip").expect("listed");
-    let expected = [Change::Search(harness.state().bound), Change::Search(Bound::none(flip))];
-    assert_eq!(harness.state().changes, expected);
-}
-
-#[test]
-fn every_metric_can_be_the_bound() {
-    for metric in METRICS.iter().filter(|metric| metric.name != "flip") {
-        let mut harness = tuning(None);
-        harness.get_by_label("error").click();
-        harness.run();
-        harness.get_by_role_and_label(egui::accesskit::Role::Button, metric.name).click();
-        harness.run();
-        let bound = harness.state().bound;
-        assert_eq!(bound.metric.name, metric.name);
-        assert!(bound.can_hold() && bound.limit.is_finite());
-    }
-}
-
-#[test]
-fn a_search_under_way_can_be_stopped() {
-    let mut harness = tuning(Some(survey(0.4, None)));
-    assert!(harness.query_by_label("Tune for this view").is_none());
-    harness.get_by_label("Stop").click();
-    harness.run();
-    assert_eq!(harness.state().changes, [Change::StopSearch]);
-}
-
-#[test]
-fn what_was_found_can_be_applied_and_keeps_what_is_the_windows_own() {
-    let mut harness = tuning(Some(survey(1.0, Some(End::Found { place: 1, simpler: true }))));
-    harness.state_mut().settings = Settings { refine_at_rest: true, target_fps: Some(30), ..Settings::exact() };
-    harness.run();
-    harness.get_by_label(&Settings::fast().flags());
-    harness.get_by_label_contains("within noise");
-    harness.get_by_label("time against error");
-    harness.get_by_label("Apply").click();
-    harness.run();
-    let applied = Settings { refine_at_rest: true, target_fps: Some(30), ..Settings::fast() };
-    assert_eq!(harness.state().changes, [Change::Settings(applied)]);
-    harness.get_by_label("Applied");
-    harness.get_by_label("ring: the settings on display");
-}
-
-#[test]
-fn a_front_without_a_find_says_so() {
-    let mut harness = tuning(Some(survey(1.0, Some(End::Nothing))));
-    harness.get_by_label("No settings met this limit");
-    harness.state_mut().settings = Settings { stride: 2, ..Settings::balanced() };
-    harness.run();
-    harness.get_by_label("the settings on display are not measured");
 }
 
 /// What clicking on something asks for.
@@ -756,144 +581,4 @@ fn a_thing_that_was_pointed_at_is_told_of() {
     harness.get_by_label("Close").click();
     harness.run();
     assert_eq!(harness.state_mut().changes.pop(), Some(Change::CloseInspection));
-}
-
-/// A panel with room for its section on what the methods do.
-fn methods_panel(panel: Panel) -> Harness<'static, Panel> {
-    let mut harness = panel.harness();
-    for section in ["Settings", "Last frame"] {
-        harness.get_by_label(section).click();
-        harness.run();
-    }
-    harness
-}
-
-#[test]
-fn every_map_can_be_chosen_and_the_status_line_says_which() {
-    for map in Map::ALL.into_iter().skip(1) {
-        let mut harness = methods_panel(Panel::new());
-        harness.get_by_label("map").click();
-        harness.run();
-        harness.get_by_role_and_label(egui::accesskit::Role::Button, map.name()).click();
-        harness.run();
-        assert_eq!(harness.state().changes, [Change::Methods(methods::Change::Map(map))]);
-        harness.get_by_label(&format!("map of {}, full quality, 1 sample", map.name()));
-    }
-}
-
-#[test]
-fn a_legend_says_what_colors_mean_and_goes_with_the_overlay() {
-    let class = |name, share| Class { name, color: [200, 100, 0], shares: vec![share] };
-    let classes = Key::Classes(vec![class("certified", 0.75), class("traced", 0.25)]);
-    let marks = vec![(0.0, "0".to_owned()), (1.0, "255".to_owned())];
-    let scale = Key::Scale(Scale { marks, unit: "steps of 255", sums: vec!["max 17, RMSE 0.31".to_owned()] });
-    for (map, key, words) in [
-        (Map::Decisions, classes, [" 75.0 %", "traced"]),
-        (Map::Error, scale, ["error: steps of 255", "max 17, RMSE 0.31"]),
-    ] {
-        let mut panel = Panel::new();
-        panel.methods.map = map;
-        panel.methods.legend = Some(Legend { map, key });
-        panel.shown.panel = PanelState::Closed;
-        let mut harness = panel.harness();
-        for words in words {
-            harness.get_by_label(words);
-        }
-        harness.state_mut().showing = Showing::Exact(None);
-        harness.run();
-        assert!(harness.query_by_label(words[0]).is_none(), "it is not the map that is seen");
-        harness.state_mut().showing = Showing::AsSet;
-        harness.state_mut().shown.overlay = false;
-        harness.run();
-        assert!(harness.query_by_label(words[0]).is_none());
-    }
-}
-
-#[test]
-fn two_sides_are_edited_apart_and_told_at_the_divider() {
-    let mut harness = methods_panel(Panel::new());
-    harness.get_by_label("side by side").click();
-    harness.run();
-    harness.state_mut().methods.split.milliseconds = [14.24, 61.3];
-    harness.get_by_label("Settings").click();
-    harness.run();
-    harness.get_by_label("balanced | 14.2 ms");
-    harness.get_by_label("exact | 61.3 ms");
-    harness.get_by_label("right").click();
-    harness.run();
-    harness.get_by_label("fast").click();
-    harness.run();
-    assert_eq!(harness.state().settings, Settings::balanced(), "the left side stays");
-    assert_eq!(harness.state().methods.split.right, Settings::fast());
-    harness.get_by_label("fast | 61.3 ms");
-    harness.get_by_label("Copy left to right").click();
-    harness.run();
-    assert_eq!(harness.state().methods.split.right, Settings::balanced());
-    assert_eq!(harness.state().methods.split.edited, Side::Right);
-}
-
-#[test]
-fn the_divider_is_dragged_with_the_pointer() {
-    let mut panel = Panel::new();
-    panel.methods.split.is_on = true;
-    panel.shown.panel = PanelState::Closed;
-    let mut harness = panel.harness();
-    harness.run();
-    let drag = |harness: &mut Harness<'_, Panel>, from: f32, to: f32| {
-        harness.drag_at(egui::pos2(from, 900.0));
-        harness.run();
-        harness.hover_at(egui::pos2(to, 940.0));
-        harness.run();
-        harness.drop_at(egui::pos2(to, 940.0));
-        harness.run();
-        harness.state().methods.split.share()
-    };
-    let share = drag(&mut harness, 0.5 * WIDTH, 0.7 * WIDTH);
-    assert!((share - 0.7).abs() < 0.005, "{share}");
-    // Beside the panel it is a share of what the picture has.
-    harness.state_mut().shown.panel = PanelState::Open;
-    harness.run();
-    let at = |share: f32| 380.0 + share * (WIDTH - 380.0);
-    let share = drag(&mut harness, at(0.7), at(0.25));
-    assert!((share - 0.25).abs() < 0.005, "{share}");
-}
-
-#[test]
-fn errors_and_costs_are_measured_on_demand() {
-    let mut harness = methods_panel(Panel::new());
-    harness.get_by_label("Measure errors").click();
-    harness.run();
-    harness.get_by_label("Measure costs").click();
-    harness.run();
-    let asked = [methods::Change::MeasureErrors, methods::Change::MeasureCosts].map(Change::Methods);
-    assert_eq!(harness.state().changes, asked);
-
-    let mut exam = Exam::new(Subject::Errors, Camera::default(), Settings::balanced(), (16, 9));
-    exam.errors = vec![("psnr", Score::Number(47.123))];
-    harness.state_mut().methods.exam = Some(exam.clone());
-    harness.run();
-    harness.get_by_label("47.12 dB");
-    harness.get_by_label("Stop measuring").click();
-    harness.run();
-    assert_eq!(harness.state().changes[2..], [Change::Methods(methods::Change::Stop)]);
-    exam.has_ended = true;
-    harness.state_mut().methods.exam = Some(exam);
-    harness.state_mut().settings = Settings::fast();
-    harness.run();
-    harness.get_by_label("measured with other settings");
-}
-
-#[test]
-fn what_a_setting_saves_stands_beside_it_until_settings_change() {
-    let mut panel = Panel::new();
-    let mut exam = Exam::new(Subject::Costs, Camera::default(), panel.settings.clone(), (16, 9));
-    let other = "off".to_owned();
-    exam.costs = vec![RowCost { row: "shadow-cache", other, cpu_ms: 62.0, other_ms: 100.0, is_bound: false }];
-    exam.has_ended = true;
-    panel.methods.exam = Some(exam);
-    let mut harness = panel.harness();
-    harness.get_by_label("-38 %");
-    harness.state_mut().settings.shadows = false;
-    harness.run();
-    assert!(harness.query_by_label("-38 %").is_none());
 }
