@@ -14,7 +14,7 @@ struct Corner {
     @location(0) uv: vec2<f32>,
 }
 
-// One triangle that covers the whole target.
+// One triangle that covers the whole viewport.
 @vertex
 fn cover(@builtin(vertex_index) index: u32) -> Corner {
     let uv = vec2<f32>(f32((index << 1u) & 2u), f32(index & 2u));
@@ -30,10 +30,12 @@ fn for_target(encoded: vec4<f32>) -> vec4<f32> {
     return vec4<f32>(select(high, low, encoded.rgb <= vec3<f32>(0.04045)), encoded.a);
 }
 
-// The frame has the target's size: pixel for pixel.
+// The frame has the viewport's size: pixel for pixel. In the middle of a pixel the product is half a texel away from
+// where rounding could matter.
 @fragment
 fn frame_exact(corner: Corner) -> @location(0) vec4<f32> {
-    return vec4<f32>(for_target(textureLoad(picture, vec2<i32>(corner.position.xy), 0)).rgb, 1.0);
+    let texel = vec2<i32>(corner.uv * vec2<f32>(textureDimensions(picture)));
+    return vec4<f32>(for_target(textureLoad(picture, texel, 0)).rgb, 1.0);
 }
 
 // The frame has another size: stretched.

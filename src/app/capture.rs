@@ -57,11 +57,30 @@ impl Warped {
     }
 }
 
+/// A second button that looks around while it is held: from where it went down until the pointer has moved from there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Drag {
+    /// It went down here and may be a click.
+    Pressed(DVec2),
+    /// The pointer is captured until it comes up.
+    Looking,
+}
+
+/// What the second button did when it came up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DragEnd {
+    /// It was clicked without motion.
+    Click,
+    /// The view was turned, or the button went down elsewhere.
+    Nothing,
+}
+
 /// The capture state machine.
 #[derive(Debug, Default)]
 pub struct Capture {
     hold: Hold,
     pressed_at: DVec2,
+    drag: Option<Drag>,
 }
 
 impl Capture {
@@ -89,15 +108,47 @@ impl Capture {
         }
     }
 
+    /// The second button went down on the picture, at `position`: to look around until it comes up, or to click.
+    pub fn drag_begin(&mut self, position: DVec2) {
+        if !self.is_active() {
+            self.drag = Some(Drag::Pressed(position));
+        }
+    }
+
+    /// The pointer moved to `position`: with the second button down it begins to look around after more than `slop`
+    /// pixels.
+    pub fn drag_moved(&mut self, host: &dyn PointerHost, position: DVec2, slop: f64) {
+        if let Some(Drag::Pressed(pressed_at)) = self.drag
+            && position.distance(pressed_at) > slop
+        {
+            self.drag = Some(Drag::Looking);
+            self.begin(host, position);
+            self.pressed_at = pressed_at;
+        }
+    }
+
+    /// The second button came up.
+    pub fn drag_end(&mut self, host: &dyn PointerHost) -> DragEnd {
+        match self.drag.take() {
+            Some(Drag::Pressed(_)) => DragEnd::Click,
+            Some(Drag::Looking) => {
+                self.release(host);
+                DragEnd::Nothing
+            }
+            None => DragEnd::Nothing,
+        }
+    }
+
     /// The button went up: only a drag ends.
     pub fn button_up(&mut self) {
-        if matches!(self.hold, Hold::Dragged { .. }) {
+        if matches!(self.hold, Hold::Dragged { .. }) && self.drag.is_none() {
             self.hold = Hold::Free;
         }
     }
 
     /// Gives the pointer back, where it was taken.
     pub fn release(&mut self, host: &dyn PointerHost) {
+        self.drag = None;
         match std::mem::take(&mut self.hold) {
             Hold::Free | Hold::Dragged { .. } => return,
             Hold::Locked { .. } => host.unlock(),
@@ -210,6 +261,40 @@ mod tests {
         assert_eq!(*host.warped_to.borrow(), [MIDDLE, MIDDLE]);
         capture.release(&host);
         assert_eq!(host.warped_to.borrow().last(), Some(&DVec2::new(10.0, 10.0)), "back where it was taken");
+    }
+
+    #[test]
+    fn the_second_button_clicks_or_looks_around_while_it_is_held() {
+        let host = Host { warps: true, ..Host::default() };
+        let mut capture = Capture::default();
+        let at = DVec2::new(10.0, 10.0);
+        capture.drag_begin(at);
+        capture.drag_moved(&host, at + DVec2::new(3.0, 0.0), 4.0);
+        assert!(!capture.is_active(), "a hand that trembles");
+        assert_eq!(capture.drag_end(&host), DragEnd::Click);
+        assert_eq!(capture.drag_end(&host), DragEnd::Nothing, "it went down elsewhere");
+
+        capture.drag_begin(at);
+        let mut turned = DVec2::ZERO;
+        for (x, y) in [(20.0, 10.0), (23.0, 10.0), (401.0, 300.0), (405.0, 300.0)] {
+            capture.drag_moved(&host, DVec2::new(x, y), 4.0);
+            turned += capture.pointer_moved(&host, DVec2::new(x, y));
+        }
+        assert!(capture.is_active() && !host.visible.get());
+        assert_eq!(turned, DVec2::new(8.0, 0.0));
+        assert_eq!(capture.drag_end(&host), DragEnd::Nothing);
+        assert!(!capture.is_active() && host.visible.get());
+        assert_eq!(host.warped_to.borrow().last(), Some(&at), "back where it was taken");
+
+        // Esc ends it: the button that comes up after that is no click.
+        capture.drag_begin(at);
+        capture.drag_moved(&host, MIDDLE, 4.0);
+        capture.release(&host);
+        assert_eq!(capture.drag_end(&host), DragEnd::Nothing);
+        capture.begin(&host, MIDDLE);
+        capture.drag_begin(MIDDLE);
+        assert_eq!(capture.drag_end(&host), DragEnd::Nothing, "the first button holds it");
+        assert!(capture.is_active());
     }
 
     #[test]

@@ -33,7 +33,7 @@ pub enum Hold {
 pub enum Command {
     /// Close the window.
     Quit,
-    /// Let the pointer go, or else give up what is being loaded.
+    /// Release the pointer, or else give up what is being loaded.
     ReleasePointer,
     /// Open or close the help.
     ToggleHelp,
@@ -45,9 +45,11 @@ pub enum Command {
     Home,
     /// Choose a scene to open.
     Open,
+    /// List the scene's warnings, or no longer.
+    ToggleWarnings,
     /// Load the scene once more.
     Reload,
-    /// Tell of what is under the pointer.
+    /// Inspect the object under the pointer.
     Inspect,
     /// Walk instead of flying, or the reverse.
     ToggleWalking,
@@ -73,7 +75,7 @@ pub enum Command {
     ToggleRecording,
     /// Start or stop replaying the last one.
     ToggleReplay,
-    /// The next map of what the methods do.
+    /// The next debug view.
     NextMap,
     /// Show two settings side by side, or no longer.
     ToggleSplit,
@@ -85,8 +87,14 @@ pub const HOLD_KEYS: &[(KeyCode, Hold)] = &[
     (KeyCode::KeyS, Hold::Back),
     (KeyCode::KeyA, Hold::Left),
     (KeyCode::KeyD, Hold::Right),
+    (KeyCode::ArrowUp, Hold::Forward),
+    (KeyCode::ArrowDown, Hold::Back),
+    (KeyCode::ArrowLeft, Hold::Left),
+    (KeyCode::ArrowRight, Hold::Right),
     (KeyCode::Space, Hold::Up),
+    (KeyCode::KeyE, Hold::Up),
     (KeyCode::KeyC, Hold::Down),
+    (KeyCode::KeyQ, Hold::Down),
     (KeyCode::ShiftLeft, Hold::Fast),
     (KeyCode::ShiftRight, Hold::Fast),
     (KeyCode::AltLeft, Hold::Slow),
@@ -103,6 +111,7 @@ pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
     (KeyCode::KeyH, false, Command::ToggleOverlay),
     (KeyCode::Home, false, Command::Home),
     (KeyCode::KeyO, true, Command::Open),
+    (KeyCode::F2, false, Command::ToggleWarnings),
     (KeyCode::F5, false, Command::Reload),
     (KeyCode::KeyI, false, Command::Inspect),
     (KeyCode::KeyG, false, Command::ToggleWalking),
@@ -142,24 +151,26 @@ pub const COMMAND_KEYS: &[(KeyCode, bool, Command)] = &[
 
 /// The help shown in the overlay: keys and what they do.
 pub const HELP: &[(&str, &str)] = &[
-    ("W A S D", "move"),
-    ("Space, C", "up, down; walking, Space jumps"),
+    ("W A S D, arrows", "move"),
+    ("E, Space", "up; walking, jump"),
+    ("Q, C", "down"),
     ("Shift, Alt", "faster, slower"),
     ("Wheel", "change the speed"),
-    ("Click", "look with the mouse"),
-    ("Esc", "let the mouse go; close the help; stop loading"),
+    ("Click, right drag", "look with the mouse"),
+    ("Esc", "release the mouse; close the help; stop loading"),
     ("G", "walk or fly"),
-    ("Home", "back to the start"),
+    ("Home", "back to the start, at the usual speed"),
     ("F1", "help"),
+    ("F2", "list the warnings of the scene"),
     ("Tab", "open or close the panel"),
     ("1 to 9", "go to a bookmark; with Ctrl, set it"),
     ("Ctrl+C, Ctrl+V", "copy, paste the camera"),
     ("R, P", "record a camera path, replay it"),
-    ("V", "next map of what the methods do"),
+    ("V", "next debug view"),
     ("X, held", "the exact picture"),
     ("B", "two settings side by side"),
     ("H", "hide everything"),
-    ("I, right click", "tell of the thing under the pointer"),
+    ("I, right click", "inspect the object under the pointer"),
     ("Ctrl+O", "open a scene; or drop one on the window"),
     ("F5", "load the scene again"),
     ("F11", "full screen"),
@@ -285,6 +296,28 @@ mod tests {
     }
 
     #[test]
+    fn arrows_move_as_letters_do_and_two_pairs_of_keys_go_up_and_down() {
+        for (arrow, letter) in [
+            (KeyCode::ArrowUp, KeyCode::KeyW),
+            (KeyCode::ArrowDown, KeyCode::KeyS),
+            (KeyCode::ArrowLeft, KeyCode::KeyA),
+            (KeyCode::ArrowRight, KeyCode::KeyD),
+            (KeyCode::KeyE, KeyCode::Space),
+            (KeyCode::KeyQ, KeyCode::KeyC),
+        ] {
+            let [one, other] = [arrow, letter].map(|key| {
+                let mut keys = Keys::default();
+                assert_eq!(keys.press(code(key), false), None);
+                keys.motion()
+            });
+            assert!(one.is_moving() && one == other, "{arrow:?} {letter:?}");
+        }
+        let mut keys = Keys::default();
+        keys.press(code(KeyCode::KeyE), false);
+        assert_eq!(keys.motion().up, 1.0);
+    }
+
+    #[test]
     fn losing_the_focus_stops_the_walk() {
         let mut keys = Keys::default();
         keys.press(code(KeyCode::KeyW), false);
@@ -300,6 +333,7 @@ mod tests {
         assert_eq!(keys.press(code(KeyCode::Tab), false), Some(Command::TogglePanel));
         assert_eq!(keys.press(code(KeyCode::Tab), true), None);
         assert_eq!(keys.press(code(KeyCode::KeyQ), false), None);
+        keys.release(code(KeyCode::KeyQ));
         keys.set_ctrl(true);
         assert_eq!(keys.press(code(KeyCode::KeyQ), false), Some(Command::Quit));
         keys.press(code(KeyCode::KeyC), false);

@@ -33,11 +33,13 @@ mod desktop;
 mod display;
 mod errands;
 mod gpu;
+mod hint;
 mod journey;
 mod layer;
 mod look;
 mod lowering;
 mod measuring;
+mod outside;
 mod pacing;
 mod session;
 mod steering;
@@ -66,7 +68,7 @@ pub struct AppOptions {
     pub load: LoadOptions,
     /// How frames are traced at first.
     pub settings: Settings,
-    /// Size of the window's inside in physical pixels.
+    /// Size of the window's inside in logical pixels: physical ones where the display's scale is 1.
     pub size: (u32, u32),
     /// What the user's last window left, and where to keep what this one leaves; without a store, nothing is kept.
     pub config: Config,

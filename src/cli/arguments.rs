@@ -30,14 +30,13 @@ pub fn command() -> Command {
         .args_conflicts_with_subcommands(true)
         .subcommand_precedence_over_arg(true)
         .max_term_width(120);
-    let view =
-        view.arg(switch("no-config", "Neither use nor change what the last window left (settings, size, place)")).arg(
-            Arg::new("screenshots")
-                .long("screenshots")
-                .value_name("NAME.png")
-                .value_parser(|name: &str| screenshot::name(Path::new(name)))
-                .help("Where F12 puts pictures; %04d stands for their number [default: raywalk-%04d.png]"),
-        );
+    let view = view.arg(switch("no-config", "Ignore and do not save window settings (settings, size, place)")).arg(
+        Arg::new("screenshots")
+            .long("screenshots")
+            .value_name("NAME.png")
+            .value_parser(|name: &str| screenshot::name(Path::new(name)))
+            .help("Where F12 puts pictures; %04d stands for their number [default: raywalk-%04d.png]"),
+    );
     let terminal = switch("terminal", "Walk in the terminal, not in a window: WASD, arrows, Q to quit");
     with_shared(view.arg(terminal)).subcommands([render(), bench(), tune(), info(), compare()])
 }

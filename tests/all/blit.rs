@@ -1,5 +1,6 @@
 //! The blit, drawn offscreen: what a frame holds is what the target gets.
 
+use raywalk::app::present::PixelRect;
 use raywalk::app::present::blit::{BYTES, Blit};
 use wgpu::TextureFormat;
 
@@ -63,12 +64,17 @@ fn read(device: &wgpu::Device, queue: &wgpu::Queue, target: &wgpu::Texture) -> V
 
 /// Blits a frame of one size to a target of another and returns the target's bytes.
 fn blit(format: TextureFormat, frame: (u32, u32), target: (u32, u32)) -> Option<Vec<u8>> {
+    blit_to(format, frame, target, [0, 0, target.0, target.1])
+}
+
+/// The same, to a part of the target.
+fn blit_to(format: TextureFormat, frame: (u32, u32), target: (u32, u32), place: PixelRect) -> Option<Vec<u8>> {
     let (device, queue) = device()?;
     let target = texture(&device, target.0, target.1, format);
     let mut blit = Blit::new(&device, format);
     blit.upload(&device, &queue, frame.0, frame.1, &pattern(frame.0, frame.1));
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    blit.draw(&mut encoder, &target, None);
+    blit.draw(&mut encoder, &target, place, None);
     queue.submit([encoder.finish()]);
     Some(read(&device, &queue, &target))
 }
@@ -101,6 +107,19 @@ fn a_frame_of_another_size_fills_the_target() {
 }
 
 #[test]
+fn a_frame_beside_the_panel_arrives_byte_for_byte_and_leaves_the_rest_black() {
+    let Some(pixels) = blit_to(TextureFormat::Rgba8Unorm, (185, 144), (256, 144), [71, 0, 185, 144]) else { return };
+    let expected = opaque(pattern(185, 144));
+    for (row, frame) in pixels.chunks_exact(4 * 256).zip(expected.chunks_exact(4 * 185)) {
+        assert!(row[..4 * 71].chunks_exact(4).all(|pixel| pixel == [0, 0, 0, 255]));
+        assert!(row[4 * 71..] == *frame);
+    }
+    let Some(pixels) = blit_to(TextureFormat::Rgba8Unorm, (32, 16), (256, 144), [128, 0, 128, 144]) else { return };
+    let at = |x: usize, y: usize| &pixels[4 * (256 * y + x)..][..4];
+    assert_eq!((&at(127, 143)[..3], &at(128, 0)[..2], &at(255, 143)[..2]), (&[0; 3][..], &[0, 0][..], &[31, 15][..]));
+}
+
+#[test]
 fn the_overlay_covers_its_own_part_only() {
     let Some((device, queue)) = device() else { return };
     let (width, height) = (64, 32);
@@ -113,7 +132,7 @@ fn the_overlay_covers_its_own_part_only() {
     blit.upload(&device, &queue, width, height, &[200; 64 * 32 * 4]);
     let bound = blit.bind(&device, &layer.create_view(&wgpu::TextureViewDescriptor::default()));
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    blit.draw(&mut encoder, &target, Some((&bound, [8, 4, 16, 8])));
+    blit.draw(&mut encoder, &target, [0, 0, width, height], Some((&bound, [8, 4, 16, 8])));
     queue.submit([encoder.finish()]);
     let pixels = read(&device, &queue, &target);
     for y in 0..height {

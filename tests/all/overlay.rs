@@ -1,22 +1,23 @@
 //! The overlay, driven like a user would: no window, no GPU.
 
+mod methods;
+mod tuning;
+mod window;
+
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use raywalk::app::exam::{Exam, RowCost, Subject};
 use raywalk::app::history::History;
 use raywalk::app::input::HELP;
 use raywalk::app::inspection::Inspection;
 use raywalk::app::labels::Labels;
 use raywalk::app::lighting::Dial;
-use raywalk::app::maps::{Class, Key, Legend, Map, Scale};
-use raywalk::app::methods::{self, Methods, Side};
-use raywalk::app::overlay::{self, Change, Notices, Showing, Shown, Tuning, View, theme};
+use raywalk::app::methods::Methods;
+use raywalk::app::overlay::{self, Change, Notices, Panel as PanelState, Showing, Shown, Tuning, View, theme};
 use raywalk::app::scenes::{Failure, Loading, Report, Wish};
 use raywalk::app::surroundings::{self, Surroundings};
-use raywalk::app::survey::{End, Point, Survey};
+use raywalk::app::survey::Survey;
 use raywalk::geometry::{Aabb, Geometry};
 use raywalk::math::simd;
-use raywalk::measure::metric::{METRICS, Score, metric};
 use raywalk::measure::tune::Bound;
 use raywalk::render::FrameStats;
 use raywalk::scene::progress::Step;
@@ -50,6 +51,9 @@ fn scene() -> Scene {
     }
 }
 
+/// Width of the window in points: there is room for the panel beside the picture.
+const WIDTH: f32 = 1280.0;
+
 /// An overlay with what it shows, and everything that was asked for.
 struct Panel {
     scene: Scene,
@@ -65,6 +69,7 @@ struct Panel {
     surroundings: Surroundings,
     inspection: Option<Inspection>,
     notices: Notices,
+    hint: f32,
     labels: Labels,
     methods: Methods,
     changes: Vec<Change>,
@@ -73,7 +78,7 @@ struct Panel {
 impl Panel {
     fn new() -> Self {
         let settings = Settings::balanced();
-        let shown = Shown::default();
+        let shown = Shown { panel: PanelState::Open, ..Shown::default() };
         let (history, showing) = (History::default(), Showing::AsSet);
         let bound = Bound::parse("flip=0.01").expect("right");
         let methods = Methods::new(&settings);
@@ -91,6 +96,7 @@ impl Panel {
             surroundings: Surroundings::default(),
             inspection: None,
             notices: Notices::default(),
+            hint: 0.0,
             labels: Labels::default(),
             methods,
             changes: Vec::new(),
@@ -129,6 +135,7 @@ impl Panel {
             stands: Some(Camera::default()),
             crosshair: true,
             notices: self.notices.current(),
+            hint: self.hint,
             labels: &self.labels,
             activity: None,
         };
@@ -147,7 +154,7 @@ impl Panel {
 
     fn harness(self) -> Harness<'static, Self> {
         Harness::builder()
-            .with_size(egui::vec2(800.0, 1400.0))
+            .with_size(egui::vec2(WIDTH, 1400.0))
             .with_context_setup(theme::apply)
             .build_ui_state(|ui, panel: &mut Self| panel.show(ui), self)
     }
@@ -191,7 +198,7 @@ fn every_setting_tells_its_help_where_it_is_pointed_at() {
 #[test]
 fn the_help_names_every_key_setting_value_and_preset() {
     let mut panel = Panel::new();
-    (panel.shown.panel, panel.shown.help) = (false, true);
+    (panel.shown.panel, panel.shown.help) = (PanelState::Closed, true);
     let mut harness = panel.harness();
     for (keys, what) in HELP {
         assert!(harness.query_all_by_label(keys).count() > 0 && harness.query_all_by_label(what).count() > 0, "{keys}");
@@ -240,7 +247,7 @@ fn the_help_fits_in_small_windows() {
 fn the_keys_can_be_read_in_narrow_windows_and_at_every_size_of_the_text() {
     for (size, scale) in [((640.0, 420.0), 1.0), ((640.0, 420.0), 2.0), ((640.0, 420.0), 3.0), ((320.0, 400.0), 1.0)] {
         let mut panel = Panel::new();
-        (panel.shown.panel, panel.shown.help) = (false, true);
+        (panel.shown.panel, panel.shown.help) = (PanelState::Closed, true);
         let size = egui::Vec2::from(size) / scale;
         let mut harness = Harness::builder()
             .with_size(size)
@@ -267,14 +274,16 @@ fn the_keys_can_be_read_in_narrow_windows_and_at_every_size_of_the_text() {
 #[test]
 fn notices_are_whole_however_many_there_are() {
     let mut harness = Panel::new().harness();
-    let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(800.0, 1400.0));
+    let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(WIDTH, 1400.0));
+    // The picture is right of the panel.
+    let middle = 0.5 * (380.0 + WIDTH);
     let mut lowest = f32::NAN;
     for text in ["There is no bookmark 5", "There is no bookmark 6, and that takes more words than the first"] {
         harness.state_mut().notices.warn(Instant::now(), text);
         // One drawing, after which nothing else happens.
         harness.step();
         let place = harness.get_by_label(text).rect();
-        assert!(window.contains_rect(place) && (place.center().x - 400.0).abs() < 300.0, "{text}: {place:?}");
+        assert!(window.contains_rect(place) && (place.center().x - middle).abs() < 300.0, "{text}: {place:?}");
         assert!(lowest.is_nan() || (place.bottom() - lowest).abs() < 1.0, "{text}: {place:?}, the first at {lowest}");
         lowest = place.bottom();
     }
@@ -395,19 +404,22 @@ fn cameras_speed_and_view_answer() {
 }
 
 #[test]
-fn the_status_line_says_rate_time_and_size() {
+fn the_status_line_says_rate_preset_way_and_speed_and_the_panel_time_and_size() {
     let mut panel = Panel::new();
     let start = Instant::now();
     for i in 0..100 {
         panel.history.record(start + Duration::from_millis(16) * i, 14.2);
     }
-    panel.shown.panel = false;
     let mut harness = panel.harness();
-    harness.get_by_label("62 fps | 14.2 ms | 1280x720");
+    harness.get_by_label("62 fps · balanced · fly · 1.5 m/s");
+    harness.get_by_label("14.2 ms · 1280x720");
+    harness.state_mut().shown.panel = PanelState::Closed;
+    harness.run();
+    harness.get_by_label("62 fps · balanced · fly · 1.5 m/s");
     assert!(harness.query_by_label(ROWS[0].name).is_none(), "the panel is closed");
     harness.state_mut().shown.overlay = false;
     harness.run();
-    assert!(harness.query_by_label_contains("1280x720").is_none(), "everything is hidden");
+    assert!(harness.query_by_label_contains("62 fps").is_none(), "everything is hidden");
 }
 
 #[test]
@@ -423,7 +435,7 @@ fn walking_is_switched_and_keys_have_the_users_names() {
         harness.get_by_label(section).click();
         harness.run();
     }
-    harness.get_by_label("Z A S D");
+    harness.get_by_label("Z A S D, arrows");
 }
 
 #[test]
@@ -443,8 +455,8 @@ fn notices_are_read_even_when_all_else_is_hidden() {
 fn what_the_picture_is_stands_below_the_status_line() {
     let sixteen = Settings { supersample: Supersample::Grid { side: 4 }, ..Settings::exact() };
     for (showing, settings, words) in [
-        (Showing::AsSet, Settings::exact(), "as set: 1 sample"),
-        (Showing::AsSet, sixteen.clone(), "as set: supersample 16"),
+        (Showing::AsSet, Settings::exact(), "full quality, 1 sample"),
+        (Showing::AsSet, sixteen.clone(), "full quality, supersample 16"),
         (Showing::Moving { preset: Some("fast"), scale: 0.7 }, sixteen, "moving: fast, scale 0.7"),
         (Showing::Moving { preset: Some("balanced"), scale: 1.0 }, Settings::exact(), "moving: balanced"),
         (Showing::Moving { preset: None, scale: 0.5 }, Settings::fast(), "moving: scale 0.5"),
@@ -455,7 +467,7 @@ fn what_the_picture_is_stands_below_the_status_line() {
         (Showing::ExactSoon, Settings::fast(), "tracing the exact picture"),
     ] {
         let mut panel = Panel::new();
-        (panel.showing, panel.settings, panel.shown.panel) = (showing, settings, false);
+        (panel.showing, panel.settings, panel.shown.panel) = (showing, settings, PanelState::Closed);
         panel.harness().get_by_label(words);
     }
 }
@@ -482,88 +494,6 @@ fn an_approximate_value_is_told_from_an_exact_one() {
     (visibility.set)(&mut harness.state_mut().settings, "subsample").expect("a listed value is allowed");
     harness.run();
     assert_eq!(count(&harness), before + 1);
-}
-
-/// A panel with its section on time and error open.
-fn tuning(survey: Option<Survey>) -> Harness<'static, Panel> {
-    let mut panel = Panel::new();
-    panel.survey = survey;
-    let mut harness = panel.harness();
-    assert!(harness.query_by_label("Measure front").is_none(), "closed at first");
-    // What is above is closed, so that there is room.
-    for section in ["Settings", "Last frame", "What the methods do", "Time against error"] {
-        harness.get_by_label(section).click();
-        harness.run();
-    }
-    harness
-}
-
-fn survey(share: f64, end: Option<End>) -> Survey {
-    let point = |settings, cpu_ms, error| Point { settings, cpu_ms, score: error, error };
-    let mut survey = Survey::new(Camera::default(), Bound::parse("flip=0.05").expect("right"));
-    (survey.share, survey.end) = (share, end);
-    survey.points = vec![point(Settings::exact(), 80.0, 0.0), point(Settings::fast(), 40.0, 0.04)];
-    survey
-}
-
-#[test]
-fn a_search_is_asked_for_with_a_bound_and_without() {
-    let mut harness = tuning(None);
-    harness.get_by_label("Tune for this view").click();
-    harness.run();
-    harness.get_by_label("Measure front").click();
-    harness.run();
-    let flip = metric("flip").expect("listed");
-    let expected = [Change::Search(harness.state().bound), Change::Search(Bound::none(flip))];
-    assert_eq!(harness.state().changes, expected);
-}
-
-#[test]
-fn every_metric_can_be_the_bound() {
-    for metric in METRICS.iter().filter(|metric| metric.name != "flip") {
-        let mut harness = tuning(None);
-        harness.get_by_label("error").click();
-        harness.run();
-        harness.get_by_role_and_label(egui::accesskit::Role::Button, metric.name).click();
-        harness.run();
-        let bound = harness.state().bound;
-        assert_eq!(bound.metric.name, metric.name);
-        assert!(bound.can_hold() && bound.limit.is_finite());
-    }
-}
-
-#[test]
-fn a_search_under_way_can_be_stopped() {
-    let mut harness = tuning(Some(survey(0.4, None)));
-    assert!(harness.query_by_label("Tune for this view").is_none());
-    harness.get_by_label("Stop").click();
-    harness.run();
-    assert_eq!(harness.state().changes, [Change::StopSearch]);
-}
-
-#[test]
-fn what_was_found_can_be_applied_and_keeps_what_is_the_windows_own() {
-    let mut harness = tuning(Some(survey(1.0, Some(End::Found { place: 1, simpler: true }))));
-    harness.state_mut().settings = Settings { refine_at_rest: true, target_fps: Some(30), ..Settings::exact() };
-    harness.run();
-    harness.get_by_label(&Settings::fast().flags());
-    harness.get_by_label_contains("within noise");
-    harness.get_by_label("time against error");
-    harness.get_by_label("Apply").click();
-    harness.run();
-    let applied = Settings { refine_at_rest: true, target_fps: Some(30), ..Settings::fast() };
-    assert_eq!(harness.state().changes, [Change::Settings(applied)]);
-    harness.get_by_label("Applied");
-    harness.get_by_label("ring: the settings on display");
-}
-
-#[test]
-fn a_front_without_a_find_says_so() {
-    let mut harness = tuning(Some(survey(1.0, Some(End::Nothing))));
-    harness.get_by_label("nothing keeps the bound");
-    harness.state_mut().settings = Settings { stride: 2, ..Settings::balanced() };
-    harness.run();
-    harness.get_by_label("the settings on display are not measured");
 }
 
 /// What clicking on something asks for.
@@ -688,135 +618,4 @@ fn a_thing_that_was_pointed_at_is_told_of() {
     harness.get_by_label("Close").click();
     harness.run();
     assert_eq!(harness.state_mut().changes.pop(), Some(Change::CloseInspection));
-}
-
-/// A panel with room for its section on what the methods do.
-fn methods_panel(panel: Panel) -> Harness<'static, Panel> {
-    let mut harness = panel.harness();
-    for section in ["Settings", "Last frame"] {
-        harness.get_by_label(section).click();
-        harness.run();
-    }
-    harness
-}
-
-#[test]
-fn every_map_can_be_chosen_and_the_status_line_says_which() {
-    for map in Map::ALL.into_iter().skip(1) {
-        let mut harness = methods_panel(Panel::new());
-        harness.get_by_label("map").click();
-        harness.run();
-        harness.get_by_role_and_label(egui::accesskit::Role::Button, map.name()).click();
-        harness.run();
-        assert_eq!(harness.state().changes, [Change::Methods(methods::Change::Map(map))]);
-        harness.get_by_label(&format!("map of {}, as set: 1 sample", map.name()));
-    }
-}
-
-#[test]
-fn a_legend_says_what_colors_mean_and_goes_with_the_overlay() {
-    let class = |name, share| Class { name, color: [200, 100, 0], shares: vec![share] };
-    let classes = Key::Classes(vec![class("certified", 0.75), class("traced", 0.25)]);
-    let marks = vec![(0.0, "0".to_owned()), (1.0, "255".to_owned())];
-    let scale = Key::Scale(Scale { marks, unit: "steps of 255", sums: vec!["max 17, RMSE 0.31".to_owned()] });
-    for (map, key, words) in [
-        (Map::Decisions, classes, [" 75.0 %", "traced"]),
-        (Map::Error, scale, ["error: steps of 255", "max 17, RMSE 0.31"]),
-    ] {
-        let mut panel = Panel::new();
-        panel.methods.map = map;
-        panel.methods.legend = Some(Legend { map, key });
-        panel.shown.panel = false;
-        let mut harness = panel.harness();
-        for words in words {
-            harness.get_by_label(words);
-        }
-        harness.state_mut().showing = Showing::Exact(None);
-        harness.run();
-        assert!(harness.query_by_label(words[0]).is_none(), "it is not the map that is seen");
-        harness.state_mut().showing = Showing::AsSet;
-        harness.state_mut().shown.overlay = false;
-        harness.run();
-        assert!(harness.query_by_label(words[0]).is_none());
-    }
-}
-
-#[test]
-fn two_sides_are_edited_apart_and_told_at_the_divider() {
-    let mut harness = methods_panel(Panel::new());
-    harness.get_by_label("side by side").click();
-    harness.run();
-    harness.state_mut().methods.split.milliseconds = [14.24, 61.3];
-    harness.get_by_label("Settings").click();
-    harness.run();
-    harness.get_by_label("balanced | 14.2 ms");
-    harness.get_by_label("exact | 61.3 ms");
-    harness.get_by_label("right").click();
-    harness.run();
-    harness.get_by_label("fast").click();
-    harness.run();
-    assert_eq!(harness.state().settings, Settings::balanced(), "the left side stays");
-    assert_eq!(harness.state().methods.split.right, Settings::fast());
-    harness.get_by_label("fast | 61.3 ms");
-    harness.get_by_label("Copy left to right").click();
-    harness.run();
-    assert_eq!(harness.state().methods.split.right, Settings::balanced());
-    assert_eq!(harness.state().methods.split.edited, Side::Right);
-}
-
-#[test]
-fn the_divider_is_dragged_with_the_pointer() {
-    let mut panel = Panel::new();
-    panel.methods.split.is_on = true;
-    panel.shown.panel = false;
-    let mut harness = panel.harness();
-    harness.run();
-    harness.drag_at(egui::pos2(400.0, 900.0));
-    harness.run();
-    harness.hover_at(egui::pos2(560.0, 940.0));
-    harness.run();
-    harness.drop_at(egui::pos2(560.0, 940.0));
-    harness.run();
-    let share = harness.state().methods.split.share();
-    assert!((share - 0.7).abs() < 0.005, "{share}");
-}
-
-#[test]
-fn errors_and_costs_are_measured_on_demand() {
-    let mut harness = methods_panel(Panel::new());
-    harness.get_by_label("Measure errors").click();
-    harness.run();
-    harness.get_by_label("Measure costs").click();
-    harness.run();
-    let asked = [methods::Change::MeasureErrors, methods::Change::MeasureCosts].map(Change::Methods);
-    assert_eq!(harness.state().changes, asked);
-
-    let mut exam = Exam::new(Subject::Errors, Camera::default(), Settings::balanced(), (16, 9));
-    exam.errors = vec![("psnr", Score::Number(47.123))];
-    harness.state_mut().methods.exam = Some(exam.clone());
-    harness.run();
-    harness.get_by_label("47.12 dB");
-    harness.get_by_label("Stop measuring").click();
-    harness.run();
-    assert_eq!(harness.state().changes[2..], [Change::Methods(methods::Change::Stop)]);
-    exam.has_ended = true;
-    harness.state_mut().methods.exam = Some(exam);
-    harness.state_mut().settings = Settings::fast();
-    harness.run();
-    harness.get_by_label("measured with other settings");
-}
-
-#[test]
-fn what_a_setting_saves_stands_beside_it_until_settings_change() {
-    let mut panel = Panel::new();
-    let mut exam = Exam::new(Subject::Costs, Camera::default(), panel.settings.clone(), (16, 9));
-    let other = "off".to_owned();
-    exam.costs = vec![RowCost { row: "shadow-cache", other, cpu_ms: 62.0, other_ms: 100.0, is_bound: false }];
-    exam.has_ended = true;
-    panel.methods.exam = Some(exam);
-    let mut harness = panel.harness();
-    harness.get_by_label("-38 %");
-    harness.state_mut().settings.shadows = false;
-    harness.run();
-    assert!(harness.query_by_label("-38 %").is_none());
 }

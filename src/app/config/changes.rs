@@ -79,7 +79,7 @@ mod tests {
         let mine = FileCamera::from(Camera { fov: 20.0, ..Camera::default() });
         ours.bookmarks.of_mut(file).store(2, mine);
         ours.recent.opened(Path::new("/ours.json"));
-        ours.panel = false;
+        ours.panel = true;
         theirs.bookmarks.of_mut(file).store(3, mine);
         theirs.bookmarks.of_mut(None).store(1, mine);
         theirs.recent.opened(Path::new("/theirs.json"));
@@ -90,7 +90,7 @@ mod tests {
         assert_eq!([1, 2, 3, 4].map(|n| room.get(n)), [Some(Camera::default().into()), Some(mine), Some(mine), None]);
         assert_eq!(both.bookmarks.of(None).get(1), Some(mine));
         assert_eq!(both.recent.files(), ["/ours.json", "/theirs.json", "/room.json"].map(Path::new));
-        assert_eq!((both.panel, both.ui_scale), (false, 2.0));
+        assert_eq!((both.panel, both.ui_scale), (true, 2.0));
         assert!(both.others.contains_key("later"));
     }
 }

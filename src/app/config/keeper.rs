@@ -138,7 +138,7 @@ mod tests {
         keeper.touch(now);
         keeper.touch(now + Duration::from_secs(2));
         assert_eq!(keeper.due(), Some(now + DELAY));
-        keeper.config.panel = false;
+        keeper.config.panel = true;
         assert!(keeper.save().is_some());
         assert_eq!(keeper.due(), None);
         assert!(keeper.save().is_none(), "it is written");
@@ -162,10 +162,10 @@ mod tests {
         other.config.bookmarks.of_mut(None).store(2, Camera::default().into());
         other.config.ui_scale = 2.0;
         save(&mut other);
-        one.config.panel = false;
+        one.config.panel = true;
         let kept = save(&mut one);
         assert!([1, 2].iter().all(|&number| kept.bookmarks.of(None).get(number).is_some()), "{kept:?}");
-        assert_eq!((kept.ui_scale, kept.panel), (2.0, false));
+        assert_eq!((kept.ui_scale, kept.panel), (2.0, true));
         assert_eq!(folder.names(), ["config.json"]);
     }
 
@@ -176,7 +176,7 @@ mod tests {
         let (store, config, _) = Store::open(path.clone());
         let mut keeper = Keeper::new(Some(store), config, &Settings::balanced());
         let in_the_way = folder.write("raywalk", b"");
-        keeper.config.panel = false;
+        keeper.config.panel = true;
         assert!(keeper.save().is_some_and(|errand| errand().is_some()));
         std::fs::remove_file(in_the_way).expect("it is there");
         // Another window came first.
@@ -184,14 +184,14 @@ mod tests {
         keeper.config.invert_look = true;
         assert!(keeper.save().is_some_and(|errand| errand().is_none()));
         let kept = Store::open(path).1;
-        assert_eq!((kept.panel, kept.invert_look, kept.ui_scale), (false, true, 2.0));
+        assert_eq!((kept.panel, kept.invert_look, kept.ui_scale), (true, true, 2.0));
     }
 
     #[test]
     fn without_a_store_nothing_is_due() {
         let mut keeper = Keeper::new(None, Config::default(), &Settings::balanced());
         keeper.touch(Instant::now());
-        keeper.config.panel = false;
+        keeper.config.panel = true;
         assert!(keeper.due().is_none() && keeper.save().is_none());
     }
 

@@ -53,12 +53,12 @@ pub struct Config {
     pub others: serde_json::Map<String, serde_json::Value>,
 }
 
-/// A window on the desktop, in physical pixels.
+/// A window on the desktop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct WindowState {
-    /// Left and upper edge of its frame, where the desktop tells.
+    /// Left and upper edge of its frame in physical pixels, where the desktop tells.
     pub position: Option<(i32, i32)>,
-    /// Width and height of its inside, when it neither is maximised nor fills the screen.
+    /// Width and height of its inside in logical pixels, when it neither is maximised nor fills the screen.
     pub size: (u32, u32),
     /// It is maximised.
     pub maximized: bool,
@@ -92,7 +92,7 @@ impl Default for Config {
             ui_scale: 1.0,
             sensitivity: None,
             invert_look: false,
-            panel: true,
+            panel: false,
             screenshots: None,
             recent: RecentFiles::default(),
             bookmarks: BookmarkShelf::default(),
@@ -166,8 +166,8 @@ mod tests {
     #[test]
     fn missing_keys_have_defaults_and_unknown_ones_are_kept() {
         assert_eq!(read("{}"), Config::default());
-        let config = read(r#"{ "panel": false, "later": [1, 2] }"#);
-        assert!(!config.panel && config.others.contains_key("later"));
+        let config = read(r#"{ "panel": true, "later": [1, 2] }"#);
+        assert!(config.panel && config.others.contains_key("later"));
         let text = serde_json::to_string(&config).expect("plain data");
         assert!(text.contains(r#""later":[1,2]"#), "{text}");
     }

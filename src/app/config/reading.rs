@@ -150,7 +150,7 @@ mod tests {
                 "/long.json": [null,null,null,null,null,null,null,null,null,{camera}] }} }}"#
         );
         let (config, faults) = read(&text);
-        assert_eq!((config.ui_scale, config.panel), (2.0, true));
+        assert_eq!((config.ui_scale, config.panel), (2.0, false));
         assert_eq!(config.settings.iter().collect::<Vec<_>>(), [(&"stride".to_owned(), &"4".to_owned())]);
         let window = WindowState { position: None, size: (900, 500), maximized: true, fullscreen: false };
         assert_eq!(config.window, Some(window));

@@ -1,9 +1,7 @@
 //! The divider between two settings side by side: a line to drag, with what each side is and how long its frame took.
 
-use super::{Change, View, of_preset};
+use super::{Change, View, preset_name};
 use crate::app::methods;
-use crate::scene::Scene;
-use crate::settings::{PRESETS, Settings};
 use egui::{Align2, Color32, CursorIcon, FontId, Order, Rect, Sense, Stroke, Ui, pos2, vec2};
 
 /// Width of what can be taken hold of, in points.
@@ -37,7 +35,7 @@ pub fn show(ui: &Ui, view: &View<'_>, available: Rect, changes: &mut Vec<Change>
             line(ui, grip, is_used);
         },
     );
-    let [left, right] = [view.left, &split.right].map(|settings| name(settings, view.scene));
+    let [left, right] = [view.left, &split.right].map(|settings| preset_name(settings, view.scene));
     let [left_ms, right_ms] = split.milliseconds;
     let y = available.bottom() - GAP;
     // Each within its own side, as far as there is room.
@@ -68,10 +66,4 @@ fn words(ui: &Ui, side: Rect, at: egui::Pos2, align: Align2, text: &str) {
             ui.add(egui::Label::new(text).extend());
         });
     });
-}
-
-/// The preset that draws the same frames, or that there is none.
-fn name(settings: &Settings, scene: &Scene) -> &'static str {
-    let preset = PRESETS.iter().find(|preset| of_preset(preset, settings, scene) == *settings);
-    preset.map_or("own settings", |preset| preset.name)
 }

@@ -22,7 +22,7 @@ const LEAST_ROOM: egui::Vec2 = egui::vec2(200.0, 140.0);
 /// What each promise means.
 const PROMISES: [(Promise, &str); 3] = [
     (Promise::SamePixels, "every value of every channel keeps its bits, against the preset exact"),
-    (Promise::Approximate, "the same picture, with errors; Time against error in the panel measures them"),
+    (Promise::Approximate, "the same picture, with errors; Auto-tune in the panel measures them"),
     (Promise::Different, "another picture, by intent"),
 ];
 
@@ -67,7 +67,7 @@ const TOPICS: [(&str, &str); 8] = [
     (
         "Speed while moving",
         "render-scale traces a smaller picture and enlarges it. target-fps lowers the preset, then the scale, for as \
-         long as you move and frames take too long; the line below the frame rate says what it does.",
+         long as you move and frames take too long; the status line says what it does.",
     ),
     (
         "Figures",

@@ -3,7 +3,7 @@
 use super::{Change, View, theme};
 use crate::app::inspection::Inspection;
 use crate::scene::Camera;
-use egui::{Align2, Grid, LayerId, Order, Pos2, RichText, Stroke, Ui};
+use egui::{Align2, Grid, LayerId, Order, Pos2, Rect, RichText, Stroke, Ui};
 use glam::DVec2;
 
 /// Width of the box in points.
@@ -15,10 +15,11 @@ const CROSSHAIR: f32 = 6.0;
 /// Radius of the ring around what was pointed at, in points.
 const RING: f32 = 5.0;
 
-/// Draws the crosshair, the outline of the thing, and the box that tells of it, whose layer it gives.
-pub fn show(ui: &Ui, view: &View<'_>, changes: &mut Vec<Change>) -> Option<LayerId> {
-    let available = ui.ctx().content_rect();
+/// Draws the crosshair, the outline of the object, and the box that tells of it, whose layer it gives. The picture has the
+/// part of the window that is `available`.
+pub fn show(ui: &Ui, view: &View<'_>, available: Rect, changes: &mut Vec<Change>) -> Option<LayerId> {
     let painter = ui.ctx().layer_painter(LayerId::new(Order::Background, egui::Id::unique("marks")));
+    let painter = painter.with_clip_rect(available);
     if view.crosshair {
         let center = available.center();
         for arm in [egui::vec2(CROSSHAIR, 0.0), egui::vec2(0.0, CROSSHAIR)] {

@@ -96,7 +96,8 @@ fn measure(ui: &mut Ui, view: &View<'_>, ask: &mut dyn FnMut(Change)) {
         ui.label(RichText::new("measured from another place").small().color(theme::WARNING));
     }
     if exam.subject == Subject::Costs && exam.has_ended {
-        let words = if exam.costs.is_empty() { "no costs measured" } else { "costs stand beside the settings" };
+        let words =
+            if exam.costs.is_empty() { "no costs measured" } else { "Costs are shown next to each setting above" };
         ui.label(RichText::new(words).small().color(theme::WEAK));
     }
     errors(ui, view, exam);

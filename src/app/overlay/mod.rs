@@ -6,6 +6,7 @@
 mod bars;
 mod controls;
 mod divider;
+mod dock;
 mod environment;
 mod figures;
 mod graph;
@@ -17,18 +18,20 @@ mod methods;
 pub mod notice;
 mod placing;
 mod scenes;
+mod status;
 pub mod theme;
 mod tuning;
 
+pub use dock::{free_area, panel_pixels};
 pub use notice::{Notice, Notices};
 pub use tuning::{Tuning, usual_bound};
 
 use super::at_rest::SAMPLES;
+use super::hint;
 use super::history::History;
 use super::inspection::Inspection;
 use super::labels::Labels;
 use super::lighting::Dial;
-use super::maps::Map;
 use super::methods::{self as seen, Methods};
 use super::scenes::{Report, Wish};
 use super::surroundings::{self, Surroundings};
@@ -36,12 +39,14 @@ use crate::measure::tune::Bound;
 use crate::render::FrameStats;
 use crate::scene::{Camera, Scene};
 use crate::settings::{PRESETS, Preset, Settings, row};
-use egui::{CollapsingHeader, RichText, Ui};
+use egui::{CollapsingHeader, LayerId, Rect, RichText, Ui};
 
-/// Width of the panel's contents in points.
-const WIDTH: f32 = 336.0;
+/// Width of the contents of a panel over the picture in points.
+const WIDTH: f32 = 360.0;
 /// Distance from the window's edge in points.
 const MARGIN: f32 = 8.0;
+/// Between the edge of the panel and what it holds, in points.
+const PADDING: f32 = 10.0;
 
 /// Everything the overlay shows.
 #[derive(Debug)]
@@ -96,6 +101,8 @@ pub struct View<'a> {
     pub crosshair: bool,
     /// What was just done or went wrong.
     pub notices: &'a [Notice],
+    /// Opacity of the hint on how to look and move, from 0 to 1.
+    pub hint: f32,
     /// How keys are called on the user's keyboard.
     pub labels: &'a Labels,
     /// What goes on beside: "recording", "replaying".
@@ -131,10 +138,10 @@ impl Showing {
     /// In words: "moving: fast, scale 0.7", "refined 9/16", "at rest: 16 samples".
     fn words(self, settings: &Settings) -> String {
         match self {
-            Self::AsSet if settings.supersample.rays() == 1 => "as set: 1 sample".to_owned(),
+            Self::AsSet if settings.supersample.rays() == 1 => "full quality, 1 sample".to_owned(),
             Self::AsSet => {
                 let value = row("supersample").map_or_else(String::new, |row| (row.get)(settings));
-                format!("as set: supersample {value}")
+                format!("full quality, supersample {value}")
             }
             Self::Moving { preset, scale } => {
                 let scale = (scale < 1.0).then(|| format!("scale {scale}"));
@@ -150,27 +157,55 @@ impl Showing {
     }
 }
 
+/// Whether the panel is there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Panel {
+    /// It is not.
+    #[default]
+    Closed,
+    /// Beside the picture; collapsed in windows where it would take too much of the width.
+    Open,
+    /// It was asked for in such a window, and lies over the picture there.
+    OverPicture,
+}
+
 /// What of the overlay is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shown {
     /// Anything at all.
     pub overlay: bool,
-    /// The panel below the status line.
-    pub panel: bool,
+    /// The panel.
+    pub panel: Panel,
     /// The help window.
     pub help: bool,
 }
 
 impl Default for Shown {
     fn default() -> Self {
-        Self { overlay: true, panel: true, help: false }
+        Self { overlay: true, panel: Panel::Closed, help: false }
     }
 }
 
 impl Shown {
+    /// Whether the panel is seen; `fits` says whether there is room for it beside the picture.
+    pub fn has_panel(self, fits: bool) -> bool {
+        self.overlay && (self.panel == Panel::OverPicture || fits && self.panel == Panel::Open)
+    }
+
     /// With the panel where it was not seen, and without it where it was.
-    pub fn with_panel_toggled(self) -> Self {
-        Self { overlay: true, panel: !(self.overlay && self.panel), ..self }
+    pub fn with_panel_toggled(self, fits: bool) -> Self {
+        let panel = match (self.has_panel(fits), fits) {
+            (true, _) => Panel::Closed,
+            (false, true) => Panel::Open,
+            (false, false) => Panel::OverPicture,
+        };
+        Self { overlay: true, panel, ..self }
+    }
+
+    /// In a window of another size: what lies over the picture collapses.
+    pub fn resized(self) -> Self {
+        let panel = if self.panel == Panel::OverPicture { Panel::Open } else { self.panel };
+        Self { panel, ..self }
     }
 
     /// With the help where it was not seen, and without it where it was.
@@ -230,99 +265,87 @@ pub enum Change {
 pub fn show(ui: &mut Ui, view: &View<'_>, shown: Shown) -> Vec<Change> {
     let mut changes = Vec::new();
     let mut above = Vec::new();
-    above.extend(scenes::boxes(ui, view, &mut changes));
+    let window = ui.ctx().content_rect();
+    let pixels_per_point = ui.ctx().pixels_per_point();
+    let size = (window.size() * pixels_per_point).round();
+    let [left, ..] = free_area((size.x as u32, size.y as u32), pixels_per_point, shown);
+    let free = window.with_min_x(window.left() + left as f32 / pixels_per_point);
+    above.extend(scenes::boxes(ui, view, free, &mut changes));
+    let hint = hint::text(view.labels);
+    // Two sides have their own words there.
+    let hint = (view.hint > 0.0 && shown.overlay && !view.methods.split.is_on).then_some((hint.as_str(), view.hint));
     // They answer what was just asked for: whoever hides the rest wants to know all the same.
-    notice::show(ui, view.notices);
+    notice::show(ui, view.notices, hint, free);
     if !shown.overlay {
         return changes;
     }
-    above.extend(inspection::show(ui, view, &mut changes));
-    let available = ui.ctx().content_rect();
+    above.extend(inspection::show(ui, view, free, &mut changes));
     if !view.showing.is_exact() {
-        divider::show(ui, view, available, &mut changes);
-        above.extend(legend::show(ui, view, available));
+        divider::show(ui, view, free, &mut changes);
+        above.extend(legend::show(ui, view, free));
     }
-    let area = egui::Area::new(egui::Id::unique("overlay"))
-        .fixed_pos(available.min + egui::vec2(MARGIN, MARGIN))
-        .default_size(available.size())
-        .constrain(false)
-        .show(ui.ctx(), |ui| {
-            let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(10.0).corner_radius(6.0);
-            frame.show(ui, |ui| {
-                ui.set_max_width(WIDTH.min(available.width() - 4.0 * MARGIN).max(1.0));
-                // Without this an area that was small, its sections closed, would never grow again.
-                ui.set_max_height((available.height() - 4.0 * MARGIN).max(1.0));
-                status_line(ui, view, shown, &mut changes);
-                if shown.panel {
-                    let height = available.bottom() - ui.cursor().top() - 3.0 * MARGIN;
-                    egui::ScrollArea::vertical().max_height(height.max(1.0)).show(ui, |ui| {
-                        ui.set_width(ui.available_width());
-                        panel(ui, view, &mut changes);
-                    });
-                }
-            });
-        });
+    let layer = if left > 0 {
+        beside_picture(ui, view, window.with_max_x(free.left()), &mut changes)
+    } else {
+        over_picture(ui, view, window, shown.panel == Panel::OverPicture, &mut changes)
+    };
     if shown.help {
         help::show(ui, view.labels, &mut changes);
     }
     if view.methods.split.is_on {
         // Where they meet, the divider lies under everything else, though it was used last.
-        above.push(area.response.layer_id);
+        above.push(layer);
         above.into_iter().for_each(|layer| ui.ctx().move_to_top(layer));
     }
     changes
 }
 
-/// "62 fps | 14.2 ms | 1280x720", the switch of the panel, and what the picture is.
-fn status_line(ui: &mut Ui, view: &View<'_>, shown: Shown, changes: &mut Vec<Change>) {
-    ui.horizontal(|ui| {
-        let is_refining = view.refining || matches!(view.showing, Showing::Refined(samples) if samples < SAMPLES);
-        let rate = match view.history.rate() {
-            _ if view.resting && (view.tuning.is_measuring() || view.methods.is_measuring()) => "measuring".to_owned(),
-            _ if view.resting && is_refining => "refining".to_owned(),
-            _ if view.resting => "idle".to_owned(),
-            Some(rate) if rate < 9.95 => format!("{rate:.1} fps"),
-            Some(rate) => format!("{rate:.0} fps"),
-            None => "tracing".to_owned(),
-        };
-        let time = view.history.last().map_or_else(String::new, |ms| format!(" | {ms:.1} ms"));
-        let (width, height) = view.size;
-        let line = format!("{rate}{time} | {width}x{height}");
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let name = if shown.panel { "Hide panel" } else { "Show panel" };
-            if ui.small_button(name).on_hover_text("Tab; H hides everything").clicked() {
-                changes.push(Change::TogglePanel);
-            }
-            if ui.small_button("Help").on_hover_text("F1: keys, settings, how it works").clicked() {
-                changes.push(Change::ToggleHelp);
-            }
-            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                let line = RichText::new(line).size(15.0).strong().color(theme::STRONG);
-                ui.add(egui::Label::new(line).truncate());
-            });
+/// Draws status line and panel over all of `strip`, and gives their layer.
+fn beside_picture(ui: &Ui, view: &View<'_>, strip: Rect, changes: &mut Vec<Change>) -> LayerId {
+    let area = egui::Area::new(egui::Id::unique("panel")).fixed_pos(strip.min).constrain(false);
+    let area = area.default_size(strip.size()).show(ui.ctx(), |ui| {
+        ui.set_clip_rect(strip);
+        ui.painter().rect_filled(strip, 0.0, theme::BACKGROUND);
+        let frame = egui::Frame::new().inner_margin(PADDING);
+        frame.show(ui, |ui| {
+            ui.set_width((strip.width() - 2.0 * PADDING).max(1.0));
+            ui.set_height((strip.height() - 2.0 * PADDING).max(1.0));
+            status::show(ui, view, true, changes);
+            scrolled_panel(ui, view, strip.bottom() - PADDING, changes);
         });
     });
-    ui.horizontal(|ui| {
-        ui.label(RichText::new(what_is_seen(view)).small().color(theme::WEAK))
-            .on_hover_text("what the picture is; see refine-at-rest and target-fps");
-        if let Some(activity) = view.activity {
-            ui.label(RichText::new(activity).small().strong().color(theme::WARNING));
-        }
-    });
+    area.response.layer_id
 }
 
-/// What one is looking at: the map if it is one, the sides, and how the picture was made.
-fn what_is_seen(view: &View<'_>) -> String {
-    let words = view.showing.words(view.left);
-    if view.showing.is_exact() {
-        return words;
-    }
-    let map = match view.methods.map {
-        Map::Picture => String::new(),
-        map => format!("map of {}, ", map.name()),
-    };
-    let sides = if view.methods.split.is_on { "two settings side by side, left " } else { "" };
-    format!("{map}{sides}{words}")
+/// Draws the status line over the picture, and the panel below it if it was asked for; gives their layer.
+fn over_picture(ui: &Ui, view: &View<'_>, window: Rect, has_panel: bool, changes: &mut Vec<Change>) -> LayerId {
+    let area = egui::Area::new(egui::Id::unique("overlay"))
+        .fixed_pos(window.min + egui::vec2(MARGIN, MARGIN))
+        .default_size(window.size())
+        .constrain(false)
+        .show(ui.ctx(), |ui| {
+            let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(PADDING).corner_radius(6.0);
+            frame.show(ui, |ui| {
+                let room = window.size() - egui::Vec2::splat(2.0 * (MARGIN + PADDING));
+                ui.set_max_width(if has_panel { room.x.min(WIDTH) } else { room.x }.max(1.0));
+                // Without this an area that was small, its sections closed, would never grow again.
+                ui.set_max_height(room.y.max(1.0));
+                status::show(ui, view, has_panel, changes);
+                if has_panel {
+                    scrolled_panel(ui, view, window.bottom() - MARGIN - PADDING, changes);
+                }
+            });
+        });
+    area.response.layer_id
+}
+
+/// The panel, from here to `bottom`. It scrolls both ways: in a narrow one whatever does not wrap would be cut off.
+fn scrolled_panel(ui: &mut Ui, view: &View<'_>, bottom: f32, changes: &mut Vec<Change>) {
+    let height = (bottom - ui.cursor().top()).max(1.0);
+    egui::ScrollArea::both().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+        ui.set_max_width(ui.available_width());
+        panel(ui, view, changes);
+    });
 }
 
 fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
@@ -333,9 +356,9 @@ fn panel(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
         controls::settings(ui, view, changes);
     });
     section(ui, "Last frame", true, |ui| figures::show(ui, view.stats));
-    section(ui, "What the methods do", true, |ui| methods::show(ui, view, changes));
+    section(ui, "Compare and debug views", true, |ui| methods::show(ui, view, changes));
     section(ui, "View", true, |ui| controls::view(ui, view, changes));
-    section(ui, "Time against error", false, |ui| tuning::show(ui, view, changes));
+    section(ui, "Auto-tune", false, |ui| tuning::show(ui, view, changes));
     section(ui, "Lights", false, |ui| lights::show(ui, view, changes));
     section(ui, "Environment", false, |ui| environment::show(ui, view, changes));
     section(ui, "Scene", false, |ui| scenes::section(ui, view, changes));
@@ -364,4 +387,33 @@ fn of_preset(preset: &Preset, current: &Settings, scene: &Scene) -> Settings {
     // The depth "scene" and the scene's own number are the same.
     let depth = current.depth.filter(|depth| *depth == scene.render.max_depth);
     Settings { depth, ..(preset.settings)() }.in_place_of(current)
+}
+
+/// The preset that draws the same frames, or that there is none.
+fn preset_name(settings: &Settings, scene: &Scene) -> &'static str {
+    let preset = PRESETS.iter().find(|preset| of_preset(preset, settings, scene) == *settings);
+    preset.map_or("own settings", |preset| preset.name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Panel, Shown};
+
+    #[test]
+    fn the_panel_opens_where_there_is_room_for_it_and_over_the_picture_where_it_is_asked_for() {
+        let shown = Shown::default();
+        assert!(!shown.has_panel(true) && !shown.has_panel(false), "closed at first");
+        let beside = shown.with_panel_toggled(true);
+        assert_eq!(beside.panel, Panel::Open);
+        assert!(beside.has_panel(true) && !beside.has_panel(false), "collapsed in a narrow window");
+        assert_eq!(beside.with_panel_toggled(true), shown);
+        let over = beside.with_panel_toggled(false);
+        assert_eq!(over.panel, Panel::OverPicture);
+        assert!(over.has_panel(false));
+        assert_eq!(over.with_panel_toggled(false), shown);
+        assert_eq!(over.resized(), beside);
+        let hidden = Shown { overlay: false, ..beside };
+        assert!(!hidden.has_panel(true));
+        assert_eq!(hidden.with_panel_toggled(true), beside);
+    }
 }

@@ -1,7 +1,7 @@
 //! Notices: one line each on what was just done or went wrong, gone after some seconds.
 
 use super::{placing, theme};
-use egui::{Align2, Area, Color32, Frame, Label, RichText, Ui};
+use egui::{Align2, Area, Color32, Frame, Label, Rect, RichText, Ui};
 use std::time::{Duration, Instant};
 
 /// Most notices on display: the oldest makes room for the newest.
@@ -51,6 +51,28 @@ impl Notices {
         self.add(now, text.into(), Tone::Problem);
     }
 
+    /// Says that something was done, in place of the notice that begins with the same word.
+    pub fn replace(&mut self, now: Instant, text: impl Into<String>) {
+        let text = text.into();
+        let first = |text: &str| text.split(' ').next().map(str::to_owned);
+        self.current.retain(|notice| first(&notice.text) != first(&text));
+        self.add(now, text, Tone::Done);
+    }
+
+    /// Says what is to be known until it is [taken back](Self::take_back), for as long as a notice can stay.
+    pub fn advise(&mut self, now: Instant, text: impl Into<String>) {
+        let text = text.into();
+        self.add(now, text.clone(), Tone::Problem);
+        if let Some(notice) = self.current.iter_mut().find(|notice| notice.text == text) {
+            notice.until = now + MOST_TIME;
+        }
+    }
+
+    /// Takes a notice away before its time.
+    pub fn take_back(&mut self, text: &str) {
+        self.current.retain(|notice| notice.text != text);
+    }
+
     /// The same words again are not said twice: they stay for longer.
     fn add(&mut self, now: Instant, text: String, tone: Tone) {
         self.current.retain(|notice| notice.text != text);
@@ -78,21 +100,30 @@ impl Notices {
     }
 }
 
-/// Draws notices above the middle of the lower edge, the newest lowest. Clicks go through them.
-pub fn show(ui: &Ui, notices: &[Notice]) {
-    if notices.is_empty() {
+/// Draws notices above the middle of the lower edge of the picture, which is `free` of the panel, the newest lowest; below
+/// them a hint of some opacity. Clicks go through them.
+pub fn show(ui: &Ui, notices: &[Notice], hint: Option<(&str, f32)>, free: Rect) {
+    if notices.is_empty() && hint.is_none() {
         return;
     }
-    let width = WIDTH.min(ui.ctx().content_rect().width() - 2.0 * MARGIN).max(1.0);
+    let width = WIDTH.min(free.width() - 2.0 * MARGIN).max(1.0);
     let id = egui::Id::unique("notices");
-    let area = Area::new(id).anchor(Align2::CENTER_BOTTOM, [0.0, -MARGIN]).order(egui::Order::Foreground);
-    placing::show(ui.ctx(), id, area.interactable(false), |ui| {
+    let area = Area::new(id).constrain_to(free).anchor(Align2::CENTER_BOTTOM, [0.0, -MARGIN]);
+    placing::show(ui.ctx(), id, area.order(egui::Order::Foreground).interactable(false), |ui| {
         ui.set_max_width(width);
         for notice in notices {
-            let frame = Frame::new().fill(theme::BACKGROUND).inner_margin(8.0).corner_radius(5.0);
-            frame.show(ui, |ui| ui.add(Label::new(RichText::new(&notice.text).color(color(notice.tone))).wrap()));
+            line(ui, &notice.text, color(notice.tone));
+        }
+        if let Some((hint, opacity)) = hint {
+            ui.set_opacity(opacity);
+            line(ui, hint, theme::STRONG);
         }
     });
+}
+
+fn line(ui: &mut Ui, text: &str, color: Color32) {
+    let frame = Frame::new().fill(theme::BACKGROUND).inner_margin(8.0).corner_radius(5.0);
+    frame.show(ui, |ui| ui.add(Label::new(RichText::new(text).color(color)).wrap()));
 }
 
 fn color(tone: Tone) -> Color32 {
@@ -125,6 +156,30 @@ mod tests {
         notices.warn(now, "x".repeat(100_000));
         notices.expire(now + MOST_TIME);
         assert!(notices.current().is_empty());
+    }
+
+    #[test]
+    fn a_figure_that_changes_is_one_notice() {
+        let now = Instant::now();
+        let mut notices = Notices::default();
+        notices.tell(now, "Camera copied");
+        notices.replace(now, "Speed 2.4 m/s");
+        notices.replace(now, "Speed 2.6 m/s");
+        assert_eq!(texts(&notices), ["Camera copied", "Speed 2.6 m/s"]);
+    }
+
+    #[test]
+    fn advice_stays_until_it_is_taken_back() {
+        let now = Instant::now();
+        let mut notices = Notices::default();
+        notices.advise(now, "outside");
+        notices.expire(now + MOST_TIME - Duration::from_millis(1));
+        assert_eq!(texts(&notices), ["outside"]);
+        notices.take_back("outside");
+        assert!(notices.current().is_empty());
+        notices.advise(now, "outside");
+        notices.expire(now + MOST_TIME);
+        assert!(notices.current().is_empty(), "at last");
     }
 
     #[test]

@@ -54,7 +54,7 @@ pub fn show(ui: &mut Ui, view: &View<'_>, changes: &mut Vec<Change>) {
                 if tune.on_hover_text(what).clicked() {
                     changes.push(Change::Search(bound));
                 }
-                let front = ui.button("Measure front");
+                let front = ui.button("Plot speed against error");
                 let what = "measure time against error on this view, without a bound";
                 if front.on_hover_text(what).clicked() {
                     changes.push(Change::Search(Bound::none(bound.metric)));
@@ -121,7 +121,7 @@ fn outcome(ui: &mut Ui, view: &View<'_>, survey: &Survey, changes: &mut Vec<Chan
             note(ui, "stopped");
         }
         Some(End::Nothing) => {
-            note(ui, "nothing keeps the bound");
+            note(ui, "No settings met this limit");
         }
         Some(End::Found { .. }) if survey.bound == Bound::none(survey.bound.metric) => {}
         Some(End::Found { place, simpler }) => {

@@ -123,11 +123,13 @@ impl Blit {
         })
     }
 
-    /// Records the pass: the frame over the whole `target` (black before the first), the overlay over its own part only.
+    /// Records the pass: the frame over its `place` on the `target`, which is black elsewhere, and the overlay over its own
+    /// part only.
     pub fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::Texture,
+        place: PixelRect,
         overlay: Option<(&wgpu::BindGroup, PixelRect)>,
     ) {
         let view = target.create_view(&wgpu::TextureViewDescriptor::default());
@@ -142,12 +144,16 @@ impl Blit {
             ..Default::default()
         });
         if let Some((texture, bind_group)) = &self.frame {
-            let fits = (texture.width(), texture.height()) == (target.width(), target.height());
+            let [left, top, width, height] = place;
+            let fits = (texture.width(), texture.height()) == (width, height);
+            pass.set_viewport(left as f32, top as f32, width as f32, height as f32, 0.0, 1.0);
+            pass.set_scissor_rect(left, top, width, height);
             pass.set_pipeline(if fits { &self.exact } else { &self.scaled });
             pass.set_bind_group(0, bind_group, &[]);
             pass.draw(0..3, 0..1);
         }
         if let Some((bind_group, [left, top, width, height])) = overlay {
+            pass.set_viewport(0.0, 0.0, target.width() as f32, target.height() as f32, 0.0, 1.0);
             pass.set_pipeline(&self.overlay);
             pass.set_bind_group(0, bind_group, &[]);
             pass.set_scissor_rect(left, top, width, height);

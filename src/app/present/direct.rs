@@ -1,7 +1,7 @@
 //! Frame and overlay joined in memory and copied to the surface: no shader runs.
 
-use super::PaintJob;
 use super::raster::{Raster, over};
+use super::{PaintJob, PixelRect};
 use crate::app::gpu::Gpu;
 use crate::render::Film;
 use egui::{Color32, TexturesDelta};
@@ -43,32 +43,38 @@ impl Direct {
         self.has_overlay = false;
     }
 
-    /// Joins `frame` and the overlay at the size of `target` and copies them there.
-    pub fn write(&mut self, frame: Option<&Film>, queue: &wgpu::Queue, target: &wgpu::Texture) {
+    /// Joins `frame` at its `place` and the overlay at the size of `target` and copies them there.
+    pub fn write(&mut self, frame: Option<&Film>, place: PixelRect, queue: &wgpu::Queue, target: &wgpu::Texture) {
         let (width, height) = (target.width(), target.height());
-        self.join(frame, width, height);
+        self.join(frame, place, width, height);
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
         queue.write_texture(target.as_image_copy(), &self.bytes, layout, target.size());
     }
 
-    /// Fills `bytes` in the surface's order; black before the first frame.
-    fn join(&mut self, frame: Option<&Film>, width: u32, height: u32) {
+    /// Fills `bytes` in the surface's order; black before the first frame and beside its place.
+    fn join(&mut self, frame: Option<&Film>, place: PixelRect, width: u32, height: u32) {
         // The order is chosen out here, so that the loops over pixels know it.
         if self.swaps {
-            self.join_ordered(frame, width, height, swapped);
+            self.join_ordered(frame, place, [width, height], swapped);
         } else {
-            self.join_ordered(frame, width, height, |rgba| rgba);
+            self.join_ordered(frame, place, [width, height], |rgba| rgba);
         }
     }
 
-    fn join_ordered(&mut self, frame: Option<&Film>, width: u32, height: u32, order: impl Fn(Pixel) -> Pixel) {
+    fn join_ordered(
+        &mut self,
+        frame: Option<&Film>,
+        place: PixelRect,
+        [width, height]: [u32; 2],
+        order: impl Fn(Pixel) -> Pixel,
+    ) {
         let size = width as usize * height as usize * 4;
         // An overlay of another size waits for the one of this.
         let is_of_this_size = self.overlay.size() == [width, height];
         self.has_overlay &= is_of_this_size && self.bytes.len() == size;
         self.bytes.resize(size, 0);
         for (y, row) in (0..height).zip(self.bytes.as_chunks_mut().0.chunks_exact_mut(width as usize)) {
-            let source = frame.map(|film| FilmRow::new(film, y, [width, height]));
+            let source = frame.and_then(|film| FilmRow::new(film, y, place));
             let copy = |pixels: &mut [Pixel], start: usize| match &source {
                 Some(source) => source.copy(pixels, start, |[r, g, b, _]| order([r, g, b, 255])),
                 None => pixels.fill([0; 4]),
@@ -151,19 +157,31 @@ fn kind(color: Color32) -> Option<bool> {
 /// A row of the picture; of a film of another size, each pixel is the nearest one.
 struct FilmRow<'a> {
     pixels: &'a [Pixel],
+    /// Where it begins, and how long it is.
+    left: usize,
     width: usize,
 }
 
 impl<'a> FilmRow<'a> {
-    /// Row `y` of a picture of `width` times `height` pixels.
-    fn new(film: &'a Film, y: u32, [width, height]: [u32; 2]) -> Self {
+    /// Row `y` of a surface on which the picture has this `place`; `None` above and below it.
+    fn new(film: &'a Film, y: u32, [left, top, width, height]: PixelRect) -> Option<Self> {
+        let y = y.checked_sub(top).filter(|y| *y < height)?;
         let row = scaled(y as usize, film.height(), height as usize);
         let pixels = &film.rgba().as_chunks().0[row * film.width() as usize..][..film.width() as usize];
-        Self { pixels, width: width as usize }
+        Some(Self { pixels, left: left as usize, width: width as usize })
     }
 
-    /// Copies the pixels from `start` on.
+    /// Copies the pixels of the surface from `start` on; those beside the picture are black.
     fn copy(&self, pixels: &mut [Pixel], start: usize, order: impl Fn(Pixel) -> Pixel) {
+        let end = start + pixels.len();
+        let [from, to] = [self.left, self.left + self.width].map(|edge| edge.clamp(start, end) - start);
+        pixels[..from].fill([0; 4]);
+        pixels[to..].fill([0; 4]);
+        let pixels = &mut pixels[from..to];
+        if pixels.is_empty() {
+            return;
+        }
+        let start = start + from - self.left;
         if self.pixels.len() == self.width {
             for (pixel, &source) in pixels.iter_mut().zip(&self.pixels[start..]) {
                 *pixel = order(source);
@@ -210,12 +228,12 @@ mod tests {
             let primitive = ClippedPrimitive { clip_rect: Rect::EVERYTHING, primitive: Primitive::Mesh(mesh) };
             let job = PaintJob { primitives: vec![primitive], size: [6, 4], pixels_per_point: 1.0 };
             direct.set_overlay(&job, &mut textures);
-            direct.join(Some(&film), 6, 4);
+            direct.join(Some(&film), [0, 0, 6, 4], 6, 4);
             let pixel = |x: usize, y: usize| &direct.bytes[4 * (6 * y + x)..][..4];
             assert_eq!(pixel(2, 2), if swaps { [10, 20, 200, 255] } else { [200, 20, 10, 255] });
             assert_eq!(pixel(0, 0), [0, 0, 0, 255], "a new film is black");
             assert_eq!(pixel(3, 2), [0, 0, 0, 255]);
-            direct.join(Some(&film), 12, 8);
+            direct.join(Some(&film), [0, 0, 12, 8], 12, 8);
             assert_eq!(direct.bytes.len(), 12 * 8 * 4);
             assert_eq!(&direct.bytes[4 * (12 * 2 + 2)..][..4], [0, 0, 0, 255], "an overlay of the old size waits");
         }
@@ -261,12 +279,16 @@ mod tests {
                 }
             }
             let [width, height] = size;
-            direct.join(frame.as_ref(), width, height);
+            // All of the surface, or what is right of a panel.
+            let left = if random.within(0.0, 1.0) < 0.5 { 0 } else { random.within(1.0, f64::from(width)) as u32 };
+            direct.join(frame.as_ref(), [left, 0, width - left, height], width, height);
             for (at, pixel) in direct.bytes.as_chunks::<4>().0.iter().enumerate() {
                 let (x, y) = (at % width as usize, at / width as usize);
-                let mut expected = frame.as_ref().map_or([0; 4], |film| {
+                let film = frame.as_ref().filter(|_| x >= left as usize);
+                let mut expected = film.map_or([0; 4], |film| {
                     let place = |at: usize, from: u32, to: u32| at * from as usize / to as usize;
-                    let (column, row) = (place(x, film.width(), width), place(y, film.height(), height));
+                    let column = place(x - left as usize, film.width(), width - left);
+                    let row = place(y, film.height(), height);
                     let [r, g, b, _] = film.rgba().as_chunks().0[row * film.width() as usize + column];
                     swapped([r, g, b, 255])
                 });

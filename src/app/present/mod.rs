@@ -64,6 +64,8 @@ impl PaintJob {
 pub struct Presenter {
     way: Way,
     frame: Option<Film>,
+    /// The part of the surface that the frame fills.
+    place: PixelRect,
 }
 
 enum Way {
@@ -82,10 +84,20 @@ impl Presenter {
             Present::Direct => true,
         };
         if direct && let Some(direct) = Direct::new(gpu) {
-            return Self { way: Way::Direct(Box::new(direct)), frame: None };
+            return Self { way: Way::Direct(Box::new(direct)), frame: None, place: whole(gpu.size()) };
         }
         let blit = Blit::new(&gpu.device, gpu.format());
-        Self { way: Way::Blit(Box::new((blit, GpuOverlay::new(gpu)))), frame: None }
+        Self { way: Way::Blit(Box::new((blit, GpuOverlay::new(gpu)))), frame: None, place: whole(gpu.size()) }
+    }
+
+    /// The part of the surface that frames fill.
+    pub fn place(&self) -> PixelRect {
+        self.place
+    }
+
+    /// Has frames fill another part of the surface.
+    pub fn set_place(&mut self, place: PixelRect) {
+        self.place = place;
     }
 
     /// The frame on display, without the overlay.
@@ -114,17 +126,42 @@ impl Presenter {
 
     /// Draws and presents.
     pub fn show(&mut self, gpu: &Gpu, target: wgpu::SurfaceTexture) {
+        let place = within(self.place, (target.texture.width(), target.texture.height()));
         match &mut self.way {
             Way::Blit(both) => {
                 let (blit, overlay) = both.as_ref();
                 let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                blit.draw(&mut encoder, &target.texture, overlay.picture(gpu.size()));
+                blit.draw(&mut encoder, &target.texture, place, overlay.picture(gpu.size()));
                 gpu.present(Some(encoder.finish()), target);
             }
             Way::Direct(direct) => {
-                direct.write(self.frame.as_ref(), &gpu.queue, &target.texture);
+                direct.write(self.frame.as_ref(), place, &gpu.queue, &target.texture);
                 gpu.present(None, target);
             }
         }
+    }
+}
+
+fn whole((width, height): (u32, u32)) -> PixelRect {
+    [0, 0, width, height]
+}
+
+/// `place` where it lies within a surface of `size`, else all of that: the window has just changed its size.
+fn within(place: PixelRect, size: (u32, u32)) -> PixelRect {
+    let [left, top, width, height] = place.map(u64::from);
+    let fits = width > 0 && height > 0 && left + width <= u64::from(size.0) && top + height <= u64::from(size.1);
+    if fits { place } else { whole(size) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::within;
+
+    #[test]
+    fn a_place_that_the_surface_has_no_more_is_all_of_it() {
+        assert_eq!(within([360, 0, 920, 720], (1280, 720)), [360, 0, 920, 720]);
+        assert_eq!(within([360, 0, 920, 720], (1279, 720)), [0, 0, 1279, 720]);
+        assert_eq!(within([0, 0, 0, 0], (64, 36)), [0, 0, 64, 36]);
+        assert_eq!(within([u32::MAX, 0, u32::MAX, 1], (64, 36)), [0, 0, 64, 36]);
     }
 }

@@ -9,6 +9,7 @@
 //! | [`dialog`] | the desktop's file dialog |
 //! | [`recent`] | the files that were opened last |
 //! | [`report`] | what there is to say of all this |
+//! | [`warnings`] | a scene's warnings in short |
 //!
 //! Architecture invariant: the scene that is shown stays until another stands, whatever becomes of the load.
 
@@ -20,12 +21,13 @@ mod report;
 mod sky;
 #[cfg(test)]
 mod trials;
+pub mod warnings;
 mod watch;
 
 pub use folder::{NoScene, scene_file};
 pub use load::{Arrival, Failed, Load, Outcome, place_of};
 pub use recent::RecentFiles;
-pub use report::{Failure, Loading, Report};
+pub use report::{Failure, Loading, Oddities, Report};
 pub use sky::SkyArrival;
 
 use crate::scene::{self, EnvironmentChoice, Limits, LoadOptions, Progress, Scene, Warning};
@@ -40,6 +42,8 @@ use winit::raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 
 /// A load that is done sooner is not worth a word.
 const WORTH_A_WORD: Duration = Duration::from_millis(250);
+/// How long the line that sums warnings up stays.
+const LINE_TIME: Duration = Duration::from_secs(6);
 
 /// Why something is loaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,6 +78,8 @@ pub enum Wish {
     Cancel,
     /// The failure was read.
     DismissFailure,
+    /// List the warnings of the scene that is shown, or no longer.
+    ToggleWarnings,
     /// The warnings were read.
     DismissWarnings,
 }
@@ -89,6 +95,17 @@ pub enum News {
     Sky(Result<SkyArrival, String>),
     /// There is nothing to show: the first load of all failed.
     Nothing(Failed),
+}
+
+/// How warnings are told of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Telling {
+    /// Not, or no longer.
+    Nothing,
+    /// In one line, until then.
+    Line(Instant),
+    /// All of them, until they are dismissed.
+    List,
 }
 
 enum Note {
@@ -128,7 +145,9 @@ pub struct Scenes {
     /// The scene that is shown has changed on disk while another was loaded.
     outdated: bool,
     failure: Option<Failure>,
+    /// The scene that is shown, if it has warnings.
     odd: Option<Arc<Scene>>,
+    telling: Telling,
     /// What was odd when it was last dismissed.
     dismissed: Vec<Warning>,
     /// Whether a first scene was shown.
@@ -160,6 +179,7 @@ impl Scenes {
             outdated: false,
             failure: None,
             odd: None,
+            telling: Telling::Nothing,
             dismissed: Vec::new(),
             has_scene: false,
             recent,
@@ -182,16 +202,24 @@ impl Scenes {
     pub fn show(&mut self, arrival: &Arrival) {
         self.has_scene = true;
         self.outdated = false;
+        let is_reload = self.place == arrival.place;
         // That another scene could not be opened stays true while this one is loaded again.
         self.failure.take_if(|failure| match (&failure.file, &arrival.file) {
             (Some(failed), Some(file)) => is_same(failed, file),
             _ => true,
         });
-        let is_odd = !arrival.scene.warnings.is_empty() && arrival.scene.warnings != self.dismissed;
-        self.odd = is_odd.then(|| Arc::clone(&arrival.scene));
         if self.file != arrival.file {
             self.sky.forget();
         }
+        let warnings = &arrival.scene.warnings;
+        self.odd = (!warnings.is_empty()).then(|| Arc::clone(&arrival.scene));
+        let is_list = self.telling == Telling::List;
+        self.telling = match () {
+            () if warnings.is_empty() => Telling::Nothing,
+            () if is_list && is_reload => Telling::List,
+            () if *warnings == self.dismissed => Telling::Nothing,
+            () => Telling::Line(Instant::now() + LINE_TIME),
+        };
         self.file.clone_from(&arrival.file);
         self.place.clone_from(&arrival.place);
         self.load_ms = arrival.load_ms;
@@ -282,13 +310,40 @@ impl Scenes {
                 }
             }
             Wish::DismissFailure => self.failure = None,
+            Wish::ToggleWarnings => self.toggle_warnings(),
             Wish::DismissWarnings => self.dismiss_warnings(),
         }
     }
 
+    /// Lists all warnings, or tells no longer of them.
+    fn toggle_warnings(&mut self) {
+        if self.telling == Telling::List {
+            self.dismiss_warnings();
+        } else if self.odd.is_some() {
+            self.telling = Telling::List;
+        }
+    }
+
+    /// Tells no longer of the warnings, nor of the same ones when the scene is loaded again.
     fn dismiss_warnings(&mut self) {
-        if let Some(scene) = self.odd.take() {
+        if let (Some(scene), true) = (&self.odd, self.telling != Telling::Nothing) {
             self.dismissed.clone_from(&scene.warnings);
+        }
+        self.telling = Telling::Nothing;
+    }
+
+    /// Folds the line of warnings away once it was there for long enough.
+    pub fn expire(&mut self, now: Instant) {
+        if self.next_end().is_some_and(|end| end <= now) {
+            self.dismiss_warnings();
+        }
+    }
+
+    /// When the line of warnings folds away, if there is one.
+    pub fn next_end(&self) -> Option<Instant> {
+        match self.telling {
+            Telling::Line(end) if self.odd.is_some() => Some(end),
+            _ => None,
         }
     }
 
@@ -352,7 +407,12 @@ impl Scenes {
                 seconds: now.saturating_duration_since(*began).as_secs_f64(),
             }),
             failure: self.failure.as_ref(),
-            odd: self.odd.as_deref(),
+            odd: self
+                .odd
+                .as_deref()
+                .filter(|_| self.telling != Telling::Nothing)
+                .map(|scene| Oddities { scene, is_list: self.telling == Telling::List }),
+            folder: self.file.as_deref().and_then(Path::parent),
             hint,
             recent: self.recent.files(),
             blind: self.blind.as_deref(),

@@ -3,7 +3,7 @@
 use super::load::Failed;
 use crate::scene::Scene;
 use crate::scene::progress::Step;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A load that came to nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,6 +41,15 @@ pub struct Loading {
     pub seconds: f64,
 }
 
+/// Warnings that are told of.
+#[derive(Clone, Copy, Debug)]
+pub struct Oddities<'a> {
+    /// Whose they are.
+    pub scene: &'a Scene,
+    /// All of them are listed, not summed up in a line.
+    pub is_list: bool,
+}
+
 /// What there is to say of scenes.
 #[derive(Clone, Debug, Default)]
 pub struct Report<'a> {
@@ -48,8 +57,10 @@ pub struct Report<'a> {
     pub loading: Option<Loading>,
     /// The load that came to nothing, until it is dismissed or another begins.
     pub failure: Option<&'a Failure>,
-    /// A scene that was odd, until that is dismissed.
-    pub odd: Option<&'a Scene>,
+    /// The warnings of the scene, as long as there is to tell of them.
+    pub odd: Option<Oddities<'a>>,
+    /// The folder of the scene that is shown.
+    pub folder: Option<&'a Path>,
     /// What may be done now.
     pub hint: Option<&'static str>,
     /// The files that were opened last.

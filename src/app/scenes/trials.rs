@@ -268,6 +268,32 @@ fn warnings_stay_until_they_were_read_and_come_back_when_they_are_others() {
 }
 
 #[test]
+fn the_line_of_warnings_folds_away_and_the_list_stays() {
+    let folder = Folder::new();
+    let file = folder.write("odd.json", r#"{ "version": 1, "colour": 1, "objects": [] }"#);
+    let (mut scenes, woken) = scenes();
+    let is_list = |scenes: &Scenes| scenes.report(Instant::now()).odd.map(|odd| odd.is_list);
+    scenes.toggle_warnings();
+    assert_eq!((is_list(&scenes), scenes.next_end()), (None, None), "nothing to tell");
+    scenes.open(&file);
+    opened(&mut scenes, &woken);
+    let end = scenes.next_end().expect("the line folds away");
+    scenes.expire(end - Duration::from_millis(1));
+    assert_eq!(is_list(&scenes), Some(false));
+    assert_eq!(scenes.report(Instant::now()).folder, Some(folder.path()));
+    scenes.expire(end);
+    assert_eq!((is_list(&scenes), scenes.next_end()), (None, None));
+    scenes.reload();
+    reloaded(&mut scenes, &woken);
+    assert_eq!(is_list(&scenes), None, "the same ones are not told of again");
+    scenes.toggle_warnings();
+    scenes.expire(Instant::now() + Duration::from_secs(3600));
+    assert_eq!(is_list(&scenes), Some(true));
+    scenes.toggle_warnings();
+    assert_eq!(is_list(&scenes), None);
+}
+
+#[test]
 fn a_file_is_one_however_its_path_is_spelled() {
     let folder = Folder::new();
     let file = folder.write("ball.json", ball("[0.5, 0, 0]"));

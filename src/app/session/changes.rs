@@ -1,6 +1,6 @@
 //! What the overlay asks for.
 
-use super::{Session, picture_size};
+use super::Session;
 use crate::app::exam::{Exam, Subject};
 use crate::app::input::Hold;
 use crate::app::lowering::presets_below;
@@ -41,7 +41,7 @@ impl Session {
             Change::Walking(_) => self.toggle_walking(Instant::now()),
             Change::EyeHeight(height) => {
                 if !self.walker.set_eye_height(&self.scene.geometry, height) {
-                    self.notices.warn(Instant::now(), "There is no room for that eye height here");
+                    self.notices.warn(Instant::now(), "Not enough room for that eye height here");
                 }
             }
             Change::Fov(fov) => self.walker.set_fov(fov),
@@ -57,7 +57,7 @@ impl Session {
             }
             Change::UiScale(scale) => self.scale_ui(scale),
             Change::Methods(change) => self.change_methods(&change),
-            Change::TogglePanel => self.shown = self.shown.with_panel_toggled(),
+            Change::TogglePanel => self.shown = self.shown.with_panel_toggled(self.panel_fits()),
             Change::Scenes(wish) => self.wish(wish),
             Change::Light(light, dial) => {
                 self.lighting.turn(light, dial);
@@ -114,7 +114,7 @@ impl Session {
 
     /// Starts an exam of the settings on what is seen from here.
     pub(super) fn examine(&mut self, subject: Subject) {
-        let size = picture_size(self.gpu.size());
+        let size = self.picture_size();
         if size.0 == 0 || size.1 == 0 {
             return;
         }
@@ -129,7 +129,7 @@ impl Session {
 
     /// Starts a search on what is seen from here.
     pub(super) fn search(&mut self, bound: Bound) {
-        let size = picture_size(self.gpu.size());
+        let size = self.picture_size();
         if size.0 == 0 || size.1 == 0 {
             return;
         }

@@ -34,8 +34,12 @@ impl Session {
             }
             Command::Open => self.wish(Wish::Open),
             Command::Reload => self.wish(Wish::Reload),
+            Command::ToggleWarnings if self.scene.warnings.is_empty() => {
+                self.notices.tell(now, "The scene has no warnings")
+            }
+            Command::ToggleWarnings => self.wish(Wish::ToggleWarnings),
             Command::Inspect => self.inspect(),
-            Command::TogglePanel => self.shown = self.shown.with_panel_toggled(),
+            Command::TogglePanel => self.apply(Change::TogglePanel),
             Command::ToggleOverlay => self.shown.overlay = !self.shown.overlay,
             Command::Home => self.apply(Change::Home),
             Command::ToggleWalking => self.toggle_walking(now),
@@ -85,8 +89,8 @@ impl Session {
     pub(super) fn paste(&mut self, now: Instant) {
         let text = self.layer.pasted().filter(|text| !text.trim().is_empty());
         match text.as_deref().map(|text| scene::read_camera("clipboard", text, self.scene.origin)) {
-            None => self.notices.warn(now, "There is no text on the clipboard to paste a camera from"),
-            Some(Err(error)) => self.notices.warn(now, format!("What was pasted is no camera: {error}")),
+            None => self.notices.warn(now, "The clipboard holds no text"),
+            Some(Err(error)) => self.notices.warn(now, format!("The clipboard holds no camera: {error}")),
             Some(Ok(camera)) => {
                 self.go_to(camera);
                 self.notices.tell(now, "Camera pasted");
@@ -135,7 +139,7 @@ impl Session {
         }
         if self.journey.see(now, self.walker.camera()) {
             self.finish_recording(now);
-            self.notices.warn(now, "The recording has ended: it is as long as can be");
+            self.notices.warn(now, "Recording stopped: length limit reached");
             self.repaint(now);
         }
         self.journey.is_replaying().then_some(now + STEP)

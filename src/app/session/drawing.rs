@@ -6,7 +6,7 @@ use crate::app::error::AppError;
 use crate::app::gpu::{Gpu, Target};
 use crate::app::layer::Layer;
 use crate::app::overlay::{self, Showing, Tuning, View};
-use crate::app::present::Presenter;
+use crate::app::present::{PixelRect, Presenter};
 use crate::app::tracer::Job;
 use cpu_time::ThreadTime;
 use std::time::{Duration, Instant};
@@ -54,6 +54,11 @@ impl Session {
 
     /// Hands the newest frame to the presenter, or the films of two sides joined anew.
     pub(super) fn show_frame(&mut self) {
+        let area = self.free_area();
+        // Until there is a picture for the room that there is by now, the one before stays where it is.
+        if self.fresh.as_ref().is_some_and(|frame| is_for(&frame.job, area)) {
+            self.presenter.set_place(area);
+        }
         let Self { methods, presenter, gpu, tracer, .. } = self;
         let mut present = |film| presenter.set_frame(gpu, film);
         let mut recycle = |film| tracer.recycle(film);
@@ -67,6 +72,7 @@ impl Session {
     pub(super) fn paint_overlay(&mut self, now: Instant) {
         let resting = self.history.is_resting(now) && !self.tracer.is_busy();
         self.notices.expire(now);
+        self.scenes.expire(now);
         let camera = self.walker.camera();
         self.methods.is_elsewhere = self.methods.exam.as_ref().is_some_and(|exam| exam.camera != camera);
         let view = View {
@@ -76,7 +82,7 @@ impl Session {
             history: &self.history,
             resting,
             refining: self.tracer.is_refining(),
-            size: self.traced.as_ref().map_or(picture_size(self.gpu.size()), |(job, _)| (job.width, job.height)),
+            size: self.traced.as_ref().map_or(self.picture_size(), |(job, _)| (job.width, job.height)),
             showing: self.showing(),
             walking: self.walker.is_walking(),
             eye_height: self.walker.eye_height(),
@@ -100,6 +106,7 @@ impl Session {
             stands: self.traced.as_ref().map(|(job, _)| job.camera).filter(|camera| *camera == self.walker.camera()),
             crosshair: self.capture.is_active(),
             notices: self.notices.current(),
+            hint: self.hint.opacity(now),
             labels: &self.labels,
             activity: match (self.journey.is_recording(), self.journey.is_replaying()) {
                 (true, _) => Some("recording"),
@@ -114,7 +121,8 @@ impl Session {
             changes.extend(overlay::show(ui, &view, shown));
         });
         self.figures.met(now);
-        self.notices.next_end().into_iter().for_each(|end| self.figures.demand_at(end));
+        let ends = [self.notices.next_end(), self.scenes.next_end(), self.hint.next_change(now)];
+        ends.into_iter().flatten().for_each(|end| self.figures.demand_at(end));
         let Some(painting) = painting else { return };
         self.presenter.set_overlay(&self.gpu, &painting.job, painting.textures);
         if let Some(delay) = painting.again {
@@ -157,8 +165,15 @@ impl Session {
     /// Starts showing frames in another way, or on another device.
     pub(super) fn replace_presenter(&mut self, now: Instant) {
         self.presenter = Presenter::new(&self.gpu, self.settings.present);
+        self.presenter.set_place(self.free_area());
         self.layer = Layer::new(&self.gpu, &self.window, self.ui_scale);
         (self.posted, self.traced) = (None, None);
         self.repaint(now);
     }
+}
+
+/// Whether a job is for a picture in this part of the window.
+fn is_for(job: &Job, [_, _, width, height]: PixelRect) -> bool {
+    let (width, height) = picture_size((width, height));
+    (job.width, job.height) == (job.lowering.scaled(width), job.lowering.scaled(height))
 }

@@ -1,9 +1,10 @@
 //! Events of the window: who gets which.
 
 use super::Session;
-use crate::app::capture::PointerHost;
+use crate::app::capture::{DragEnd, PointerHost};
 use crate::app::error::AppError;
 use crate::app::input::Command;
+use crate::app::walker::speed_in_words;
 use glam::DVec2;
 use std::time::Instant;
 use winit::dpi::PhysicalPosition;
@@ -13,6 +14,8 @@ use winit::window::{CursorGrabMode, Window};
 
 /// Pixels of smooth scrolling that count as one notch of a wheel.
 const PIXELS_PER_NOTCH: f64 = 40.0;
+/// Logical pixels that the pointer may move during a click.
+const SLOP: f64 = 4.0;
 
 impl Session {
     /// Passes an event to whom it concerns; true to close the window.
@@ -28,21 +31,21 @@ impl Session {
             }
             WindowEvent::CursorMoved { position, .. } => {
                 self.pointer = DVec2::new(position.x, position.y);
-                let turn = self.capture.pointer_moved(&WindowHost(&self.window), self.pointer);
-                self.look(turn);
+                let host = WindowHost(&self.window);
+                self.capture.drag_moved(&host, self.pointer, SLOP * self.window.scale_factor());
+                let turn = self.capture.pointer_moved(&host, self.pointer);
+                self.look(now, turn);
             }
             WindowEvent::MouseInput { state, button: MouseButton::Left, .. } if self.on_button(*state) => {
                 return Ok(false);
             }
-            WindowEvent::MouseInput { state: ElementState::Pressed, button: MouseButton::Right, .. }
-                if self.capture.is_active() || !self.layer.takes_click() =>
-            {
-                self.inspect();
+            WindowEvent::MouseInput { state, button: MouseButton::Right, .. } if self.on_right_button(*state) => {
                 self.repaint(now);
                 return Ok(false);
             }
             WindowEvent::MouseWheel { delta, .. } if self.capture.is_active() || !self.layer.is_under_pointer() => {
                 self.walker.scroll(notches(*delta));
+                self.notices.replace(now, format!("Speed {}", speed_in_words(self.walker.speed())));
                 self.repaint(now);
                 return Ok(false);
             }
@@ -54,6 +57,8 @@ impl Session {
             }
             WindowEvent::Resized(size) => {
                 self.gpu.resize(*size);
+                self.shown = self.shown.resized();
+                self.presenter.set_place(self.free_area());
                 self.keeper.touch(now);
                 self.repaint(now);
             }
@@ -79,12 +84,13 @@ impl Session {
     /// The mouse moved, in its own counts; concerns us while the pointer is locked.
     pub fn on_device_motion(&mut self, delta: DVec2) {
         let turn = self.capture.device_moved(delta);
-        self.look(turn);
+        self.look(Instant::now(), turn);
     }
 
-    pub(super) fn look(&mut self, counts: DVec2) {
+    pub(super) fn look(&mut self, now: Instant, counts: DVec2) {
         if counts != DVec2::ZERO {
             self.journey.stop_replay();
+            self.first_move(now);
             self.walker.look(counts);
         }
     }
@@ -138,6 +144,24 @@ impl Session {
             }
         }
         false
+    }
+
+    /// The right button: dragged, it looks around; clicked, it inspects. True when the picture took it.
+    fn on_right_button(&mut self, state: ElementState) -> bool {
+        let is_captured = self.capture.is_active();
+        match state {
+            ElementState::Pressed if is_captured => self.inspect(),
+            ElementState::Pressed if self.layer.takes_click() => return false,
+            ElementState::Pressed => {
+                self.layer.let_go();
+                self.capture.drag_begin(self.pointer);
+            }
+            ElementState::Released => match self.capture.drag_end(&WindowHost(&self.window)) {
+                DragEnd::Click => self.inspect(),
+                DragEnd::Nothing => return is_captured,
+            },
+        }
+        true
     }
 }
 

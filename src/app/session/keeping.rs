@@ -2,6 +2,7 @@
 
 use super::Session;
 use crate::app::lighting::Dial;
+use crate::app::overlay::Panel;
 use crate::app::screenshot::{self, Place, Shot};
 use crate::app::{desktop, errands, walker};
 use directories::BaseDirs;
@@ -20,7 +21,7 @@ impl Session {
         config.ui_scale = self.ui_scale;
         config.invert_look = self.walker.invert_look;
         config.sensitivity = (self.walker.sensitivity != walker::SENSITIVITY).then_some(self.walker.sensitivity);
-        config.panel = self.shown.panel;
+        config.panel = self.shown.panel != Panel::Closed;
         config.recent.clone_from(self.scenes.recent());
         if let Some(errand) = self.keeper.save() {
             self.errands.run(errand);
@@ -38,7 +39,7 @@ impl Session {
         if !Arc::ptr_eq(&job.scene, &self.lit) {
             // What there is to say of the scene and its light is not of this picture.
             self.camerawork.postpone();
-            self.notices.tell(now, "Screenshot as soon as the changed scene is shown");
+            self.notices.tell(now, "Screenshot follows when the changed scene is shown");
             return;
         }
         let place = Place {
@@ -52,7 +53,7 @@ impl Session {
         let is_kept = self.posted.as_ref() == Some(job);
         let shot = Shot::new(film, job, *samples, place);
         match self.camerawork.ask(shot, is_kept) {
-            None => self.notices.tell(now, "Screenshot as soon as the picture has all its samples"),
+            None => self.notices.tell(now, "Screenshot follows when refining ends"),
             Some(shot) => self.write(shot),
         }
     }

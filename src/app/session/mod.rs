@@ -13,6 +13,7 @@ use crate::app::config::{Keeper, WindowState};
 use crate::app::errands::{self, Errands};
 use crate::app::error::AppError;
 use crate::app::gpu::Gpu;
+use crate::app::hint::Hint;
 use crate::app::history::History;
 use crate::app::input::Keys;
 use crate::app::inspection::Inspection;
@@ -22,9 +23,10 @@ use crate::app::layer::Layer;
 use crate::app::lighting::Lighting;
 use crate::app::lowering::{Lowering, lowered, presets_below};
 use crate::app::methods::Methods;
-use crate::app::overlay::{self, Notices, Shown};
+use crate::app::outside::{Crossing, Outside};
+use crate::app::overlay::{self, Notices, Panel, Shown};
 use crate::app::pacing::{Limiter, Rates};
-use crate::app::present::Presenter;
+use crate::app::present::{PixelRect, Presenter};
 use crate::app::scenes::Scenes;
 use crate::app::screenshot::Camerawork;
 use crate::app::steering::Steering;
@@ -52,7 +54,9 @@ const STEP: Duration = Duration::from_millis(8);
 /// Most pixels of a traced picture (8K): larger windows show it enlarged.
 const MAX_PIXELS: f64 = 7680.0 * 4320.0;
 /// What is told where a walker does not fit.
-const NO_ROOM: &str = "There is no room to walk here: flying on";
+const NO_ROOM: &str = "Not enough room to walk here; still flying";
+/// What is told where there is nothing to be seen around.
+const OUTSIDE: &str = "Outside the scene: Home returns";
 
 /// Everything that lives as long as the window. Dropped from the top: the tracer is joined before the window goes.
 pub struct Session {
@@ -83,6 +87,8 @@ pub struct Session {
     tally: Option<Tally>,
     shown: Shown,
     notices: Notices,
+    hint: Hint,
+    outside: Outside,
     keeper: Keeper,
     /// The window opened as the last one was: no scene resizes it.
     is_placed: bool,
@@ -155,6 +161,7 @@ impl Session {
         let mut walker = Walker::in_scene(&scene, camera);
         walker.invert_look = config.invert_look;
         walker.sensitivity = config.sensitivity.unwrap_or(walker.sensitivity);
+        let outside = whereabouts(&scene, camera);
         let news = Arc::clone(&call);
         let mut session = Self {
             tracer: Tracer::start(rates.display, move |word| call(Call::Traced(word)))?,
@@ -179,8 +186,10 @@ impl Session {
             history: History::default(),
             stats: FrameStats::default(),
             tally: options.tells.then(Tally::default),
-            shown: Shown { panel: config.panel, ..Shown::default() },
+            shown: Shown { panel: if config.panel { Panel::Open } else { Panel::Closed }, ..Shown::default() },
             notices: Notices::default(),
+            hint: Hint::default(),
+            outside,
             ui_scale: config.ui_scale,
             keeper,
             is_placed,
@@ -320,6 +329,7 @@ impl Session {
         let motion = self.keys.motion();
         if motion.is_moving() {
             self.journey.stop_replay();
+            self.first_move(now);
         }
         let passed = self.stepped.map_or(Duration::ZERO, |before| now.saturating_duration_since(before));
         if !self.walker.advance(&self.scene.geometry, motion, passed.as_secs_f64()) {
@@ -327,12 +337,47 @@ impl Session {
             self.repaint(now);
         }
         self.stepped = (motion.is_moving() || self.walker.is_under_way()).then_some(now);
+        match self.outside.see(self.walker.camera().eye) {
+            Some(Crossing::Left) => self.notices.advise(now, OUTSIDE),
+            Some(Crossing::Returned) => self.notices.take_back(OUTSIDE),
+            None => return,
+        }
+        self.repaint(now);
+    }
+
+    /// The user knows how to move: the hint fades.
+    fn first_move(&mut self, now: Instant) {
+        if self.hint.opacity(now) > 0.0 && self.hint.next_change(now).is_none() {
+            self.hint.moved(now);
+            self.repaint(now);
+        }
+    }
+
+    /// The part of the window in pixels that the picture has to itself.
+    fn free_area(&self) -> PixelRect {
+        overlay::free_area(self.gpu.size(), self.pixels_per_point(), self.shown)
+    }
+
+    /// Size of the traced picture in pixels; 0 while the window has none.
+    fn picture_size(&self) -> (u32, u32) {
+        let [_, _, width, height] = self.free_area();
+        picture_size((width, height))
+    }
+
+    /// Pixels in a point of the overlay.
+    fn pixels_per_point(&self) -> f32 {
+        self.window.scale_factor() as f32 * self.ui_scale
+    }
+
+    /// Whether there is room for the panel beside the picture.
+    fn panel_fits(&self) -> bool {
+        overlay::panel_pixels(self.gpu.size().0, self.pixels_per_point()).is_some()
     }
 
     /// Asks for a frame when it would differ from the one last asked for. Says when motion will have stopped, if that
     /// would change what is asked for.
     fn post(&mut self, now: Instant) -> Option<Instant> {
-        let (width, height) = picture_size(self.gpu.size());
+        let (width, height) = self.picture_size();
         if width == 0 || height == 0 {
             return None;
         }
@@ -372,6 +417,12 @@ fn picture_size((width, height): (u32, u32)) -> (u32, u32) {
     let scale = (MAX_PIXELS / pixels).sqrt();
     let scaled = |side: u32| ((f64::from(side) * scale) as u32).max(1);
     (scaled(width), scaled(height))
+}
+
+/// Where the eye is against the scene and its cameras, `home` among them.
+fn whereabouts(scene: &Scene, home: Camera) -> Outside {
+    let eyes = scene.cameras.iter().map(|named| named.camera.eye).chain([home.eye]);
+    Outside::new(scene.bounds(), eyes)
 }
 
 fn title(scene: &Scene) -> String {

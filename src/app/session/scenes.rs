@@ -1,11 +1,7 @@
 //! Scenes that come and change while the window is open.
 
-use super::events::WindowHost;
-use super::{Session, title};
-use crate::app::capture::PointerHost;
-use crate::app::config::WindowState;
+use super::{OUTSIDE, Session, title, whereabouts};
 use crate::app::error::AppError;
-use crate::app::inspection;
 use crate::app::journey::Journey;
 use crate::app::lighting::Lighting;
 use crate::app::lowering::presets_below;
@@ -13,11 +9,12 @@ use crate::app::scenes::{Arrival, News, SkyArrival, Wish};
 use crate::app::steering::Steering;
 use crate::app::surroundings::Surroundings;
 use crate::app::tracer::Job;
+use crate::app::{desktop, inspection};
 use crate::scene::Scene;
 use glam::DVec2;
 use std::sync::Arc;
 use std::time::Instant;
-use winit::dpi::PhysicalSize;
+use winit::dpi::LogicalSize;
 
 impl Session {
     /// Takes up what has become of scenes.
@@ -49,9 +46,9 @@ impl Session {
         self.lighting = Lighting::of(&scene);
         self.surroundings = Surroundings::of(&scene);
         if let Some(size) = size.filter(|_| !self.is_placed) {
-            let (width, height) = WindowState::nearest_size(size);
+            let (width, height) = desktop::possible_size(size, self.window.scale_factor());
             // The window stays as it is where the system does not let it be resized.
-            let _ = self.window.request_inner_size(PhysicalSize::new(width, height));
+            let _ = self.window.request_inner_size(LogicalSize::new(width, height));
         }
         self.show_scene(scene);
     }
@@ -81,6 +78,8 @@ impl Session {
         self.inspection = None;
         self.light(self.surroundings.around(self.lighting.lit(&scene)));
         self.walker.lose_footing();
+        self.notices.take_back(OUTSIDE);
+        self.outside = whereabouts(&scene, self.walker.home());
         self.scene = scene;
     }
 
@@ -113,11 +112,12 @@ impl Session {
         self.lit = lit;
     }
 
-    /// Tells of what the picture shows under the pointer, or in its middle while the pointer is captured.
+    /// Inspects what the picture shows under the pointer, or in its middle while the pointer is captured.
     pub(super) fn inspect(&mut self) {
         let Some((Job { scene, camera, width, height, .. }, _)) = &self.traced else { return };
-        let host = WindowHost(&self.window);
-        let place = if self.capture.is_active() { DVec2::splat(0.5) } else { self.pointer / host.size() };
+        let [left, top, across, down] = self.presenter.place().map(f64::from);
+        let place = (self.pointer - DVec2::new(left, top)) / DVec2::new(across.max(1.0), down.max(1.0));
+        let place = if self.capture.is_active() { DVec2::splat(0.5) } else { place };
         self.inspection = inspection::inspect(scene, camera, (*width, *height), place);
     }
 

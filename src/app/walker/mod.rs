@@ -16,6 +16,7 @@ use body::{Body, World};
 use gait::{Gait, PERSON};
 use glam::{DQuat, DVec2, DVec3, Vec3};
 use pace::Pace;
+pub use pace::in_words as speed_in_words;
 
 /// Metres a second that a person walks.
 const WALKING_SPEED: f64 = 2.5;
@@ -80,6 +81,8 @@ pub struct Walker {
     pose: Pose,
     fov: f32,
     way: Way,
+    /// What the user chose: to walk, or to fly. Until then it is up to each scene.
+    chosen: Option<bool>,
     eye_height: f64,
     /// Of flying, and of walking.
     flight: Pace,
@@ -104,6 +107,7 @@ impl Walker {
             pose,
             fov: home.fov,
             way: Way::Fly,
+            chosen: None,
             eye_height: PERSON,
             flight: Pace::new(surroundings / CROSSING_SECONDS),
             stroll: Pace::new(WALKING_SPEED),
@@ -112,20 +116,29 @@ impl Walker {
         }
     }
 
-    /// Stands at `home` in `scene`, with a speed and an eye height that fit what is there.
+    /// Stands at `home` in `scene`, with a speed and an eye height that fit what is there. Where the scene's first camera
+    /// stands on a floor, a walk that starts there is on foot.
     pub fn in_scene(scene: &Scene, home: Camera) -> Self {
         let surroundings = surroundings(scene.objects.iter().map(|object| object.bounds), home.eye);
         let mut walker = Self::new(home, surroundings);
         let world = World { geometry: &scene.geometry, up: walker.up() };
         walker.take_eye_height(usual_eye_height(surroundings, world.distance(walker.pose.eye, -world.up)));
+        if scene.on_foot && scene.cameras.first().is_some_and(|first| first.camera == home) {
+            walker.way = Way::Walk(None);
+        }
         walker
     }
 
-    /// Comes to another scene and stands at `home` there. Habits stay: of looking, and of walking or flying.
+    /// Comes to another scene and stands at `home` there. Habits stay: of looking, and of walking or flying once the user
+    /// has chosen.
     pub fn enter(&mut self, scene: &Scene, home: Camera) {
-        let way = if self.is_walking() { Way::Walk(None) } else { Way::Fly };
-        let (sensitivity, invert_look) = (self.sensitivity, self.invert_look);
-        *self = Self { sensitivity, invert_look, way, ..Self::in_scene(scene, home) };
+        let (sensitivity, invert_look, chosen) = (self.sensitivity, self.invert_look, self.chosen);
+        *self = Self { sensitivity, invert_look, chosen, ..Self::in_scene(scene, home) };
+        match chosen {
+            Some(true) => self.way = Way::Walk(None),
+            Some(false) => self.way = Way::Fly,
+            None => {}
+        }
     }
 
     /// Where the walk started.
@@ -158,9 +171,11 @@ impl Walker {
         self.moved = false;
     }
 
-    /// Back to where the walk started.
+    /// Back to where the walk started, and to the speed it started with.
     pub fn go_home(&mut self) {
         self.go_to(self.home);
+        self.flight.reset();
+        self.stroll.reset();
     }
 
     /// The camera of this moment.
@@ -256,9 +271,14 @@ impl Walker {
     pub fn toggle_walking(&mut self, geometry: &Geometry) -> bool {
         if self.is_walking() {
             self.way = Way::Fly;
+            self.chosen = Some(false);
             return true;
         }
-        self.land(geometry)
+        let found = self.land(geometry);
+        if found {
+            self.chosen = Some(true);
+        }
+        found
     }
 
     /// What surrounds the walker has changed: on foot, they look for the floor anew when they next move.

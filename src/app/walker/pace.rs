@@ -2,8 +2,14 @@
 
 /// Speed is multiplied by this for each notch of the wheel.
 const NOTCH: f64 = 1.1;
-/// Most notches away from the usual speed, either way: hundreds of millions of times, yet never zero.
-const MAX_NOTCHES: f64 = 200.0;
+/// The speed stays within this factor of the usual one, either way: slower, keys would seem dead.
+const MAX_FACTOR: f64 = 32.0;
+
+/// A speed in words, of two figures: "2.4 m/s".
+pub fn in_words(speed: f64) -> String {
+    let digits = if speed > 0.0 { (1.0 - speed.log10().floor()).clamp(0.0, 9.0) as usize } else { 1 };
+    format!("{speed:.digits$} m/s")
+}
 
 /// A speed that can be changed and always comes back.
 #[derive(Clone, Copy, Debug)]
@@ -29,19 +35,29 @@ impl Pace {
         self.usual * NOTCH.powf(self.notches)
     }
 
+    /// Back to the usual speed.
+    pub fn reset(&mut self) {
+        self.notches = 0.0;
+    }
+
+    /// The most notches away from the usual speed, either way.
+    fn most_notches() -> f64 {
+        MAX_FACTOR.ln() / NOTCH.ln()
+    }
+
     /// Sets the speed in metres a second, within the range that notches cover.
     pub fn set_speed(&mut self, speed: f64) {
         if !speed.is_nan() {
             // Without the end, 0 would be infinitely many notches away.
             let notches = (speed.max(0.0) / self.usual).ln() / NOTCH.ln();
-            self.notches = notches.clamp(-MAX_NOTCHES, MAX_NOTCHES);
+            self.notches = notches.clamp(-Self::most_notches(), Self::most_notches());
         }
     }
 
     /// Changes the speed by notches of the wheel.
     pub fn scroll(&mut self, notches: f64) {
         if notches.is_finite() {
-            self.notches = (self.notches + notches).clamp(-MAX_NOTCHES, MAX_NOTCHES);
+            self.notches = (self.notches + notches).clamp(-Self::most_notches(), Self::most_notches());
         }
     }
 }
@@ -56,21 +72,37 @@ mod tests {
         pace.scroll(1.0);
         assert!((pace.speed() / 2.0 - 1.1).abs() < 1e-12);
         pace.scroll(-1.0);
-        (0..200).for_each(|_| pace.scroll(-1.0));
-        assert!(pace.speed() > 0.0);
-        (0..200).for_each(|_| pace.scroll(1.0));
-        assert!((pace.speed() / 2.0 - 1.0).abs() < 1e-9);
-        (0..1000).for_each(|_| pace.scroll(5.0));
-        assert!(pace.speed().is_finite());
+        assert!((pace.speed() / 2.0 - 1.0).abs() < 1e-12);
         pace.set_speed(3.5);
         assert!((pace.speed() - 3.5).abs() < 1e-9);
-        let slowest = 2.0 * NOTCH.powf(-MAX_NOTCHES);
-        for speed in [0.0, -1.0, 1e-300] {
-            pace.set_speed(speed);
-            assert_eq!(pace.speed(), slowest, "set to {speed}");
-        }
         pace.scroll(f64::NAN);
         pace.set_speed(f64::NAN);
-        assert!(pace.speed() > 0.0);
+        assert!((pace.speed() - 3.5).abs() < 1e-9);
+        pace.reset();
+        assert_eq!(pace.speed(), 2.0);
+    }
+
+    #[test]
+    fn speeds_are_told_in_two_figures() {
+        for (speed, text) in
+            [(2.44, "2.4 m/s"), (0.0781, "0.078 m/s"), (12.3, "12 m/s"), (929.0, "929 m/s"), (0.0, "0.0 m/s")]
+        {
+            assert_eq!(in_words(speed), text);
+        }
+    }
+
+    #[test]
+    fn the_speed_stays_within_32_times_the_usual_one() {
+        let near = |pace: Pace, speed: f64| (pace.speed() / speed - 1.0).abs() < 1e-9;
+        let mut pace = Pace::new(2.0);
+        (0..200).for_each(|_| pace.scroll(-1.0));
+        assert!(near(pace, 2.0 / 32.0), "{pace:?}");
+        // None of those beyond the end are owed.
+        (0..100).for_each(|_| pace.scroll(1.0));
+        assert!(near(pace, 2.0 * 32.0), "{pace:?}");
+        for (speed, kept) in [(0.0, 0.0625), (-1.0, 0.0625), (1e-300, 0.0625), (f64::INFINITY, 64.0), (1e9, 64.0)] {
+            pace.set_speed(speed);
+            assert!(near(pace, kept), "set to {speed}: {pace:?}");
+        }
     }
 }

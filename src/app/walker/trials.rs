@@ -3,7 +3,7 @@
 use super::*;
 use crate::geometry::{Part, PrimitiveId, Shape};
 use crate::math::random::SplitMix64;
-use crate::scene::{LoadOptions, load};
+use crate::scene::{LoadOptions, load, load_text};
 use std::path::Path;
 
 const EYE: f64 = PERSON;
@@ -357,6 +357,67 @@ fn a_scene_that_changes_around_a_walker_does_not_hold_them() {
     assert!(!walker.advance(&after, FORWARD, 0.01) && !walker.is_walking(), "within a wall there is no room");
     go(&mut walker, &after, FORWARD, 0.5, 60.0);
     assert!(eye(&walker).z < -0.5);
+}
+
+/// A closed room, as a scene whose camera stands on its floor or flies in it.
+fn room_scene(on_foot: bool) -> Scene {
+    let text = r#"{ "version": 1, "camera": { "position": [0, 1.6, 0], "look_at": [0, 1.6, -1] },
+        "objects": [ { "type": "box", "min": [-3, -0.1, -3], "max": [3, 0, 3] },
+            { "type": "box", "min": [-3, 0, -3.1], "max": [3, 2.5, -3] },
+            { "type": "box", "min": [-3, 0, 3], "max": [3, 2.5, 3.1] },
+            { "type": "box", "min": [-3.1, 0, -3], "max": [-3, 2.5, 3] },
+            { "type": "box", "min": [3, 0, -3], "max": [3.1, 2.5, 3] } ] }"#;
+    let scene = load_text("room.json", text, &LoadOptions::default()).expect("right");
+    Scene { on_foot, ..scene }
+}
+
+#[test]
+fn where_the_first_camera_stands_on_a_floor_one_starts_on_foot_and_stays_inside() {
+    let scene = room_scene(true);
+    let home = scene.cameras[0].camera;
+    let mut walker = Walker::in_scene(&scene, home);
+    assert!(walker.is_walking());
+    assert_eq!(walker.camera(), home, "bit for bit");
+    for turn in [0.0, 400.0, 777.0, 1234.0] {
+        walker.look(DVec2::new(turn, 0.0));
+        go(&mut walker, &scene.geometry, FORWARD, 5.0, 30.0);
+        let eye = eye(&walker);
+        assert!(eye.x.abs() < 3.0 && eye.z.abs() < 3.0 && (eye.y - EYE).abs() < 0.01, "{eye}");
+    }
+    assert!(!Walker::in_scene(&room_scene(false), home).is_walking());
+    let elsewhere = Camera { eye: Vec3::new(0.0, 2.4, 1.0), ..home };
+    assert!(!Walker::in_scene(&scene, elsewhere).is_walking(), "another camera was asked for");
+}
+
+#[test]
+fn in_the_next_scene_one_goes_as_it_says_until_the_user_has_chosen() {
+    let (level, object) = (room_scene(true), room_scene(false));
+    let home = level.cameras[0].camera;
+    let mut walker = Walker::in_scene(&object, home);
+    walker.enter(&level, home);
+    assert!(walker.is_walking());
+    walker.enter(&object, home);
+    assert!(!walker.is_walking());
+    assert!(walker.toggle_walking(&object.geometry));
+    walker.enter(&object, home);
+    assert!(walker.is_walking(), "the user chose to walk");
+    assert!(walker.toggle_walking(&object.geometry));
+    walker.enter(&level, home);
+    assert!(!walker.is_walking(), "and to fly");
+}
+
+#[test]
+fn the_speed_has_ends_and_home_resets_it() {
+    let scene = room_scene(false);
+    let mut walker = Walker::in_scene(&scene, scene.cameras[0].camera);
+    let usual = walker.speed();
+    (0..200).for_each(|_| walker.scroll(-1.0));
+    assert!((walker.speed() * 32.0 / usual - 1.0).abs() < 1e-9);
+    let before = eye(&walker);
+    go(&mut walker, &scene.geometry, FORWARD, 5.0, 60.0);
+    assert!(eye(&walker).distance(before) > 0.1, "W is not dead");
+    walker.go_home();
+    assert_eq!(walker.speed(), usual);
 }
 
 #[test]
