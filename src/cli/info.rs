@@ -9,6 +9,7 @@ use raywalk::geometry::Aabb;
 use raywalk::measure::counts::SceneCounts;
 use raywalk::render::Plan;
 use raywalk::scene::light::LightKind;
+use raywalk::scene::start::Unit;
 use raywalk::scene::texture::Texture;
 use raywalk::scene::{Light, NamedCamera, Scene};
 use raywalk::settings::Settings;
@@ -35,6 +36,12 @@ struct Info {
     materials: usize,
     textures: Vec<String>,
     cameras: Vec<CameraInfo>,
+    /// How the first camera was found.
+    start: String,
+    /// How high the eye stands above the floor there, in the file's units; `null` where it stands on none.
+    eye_height: Option<f32>,
+    /// The unit that the sizes tell, where it is not the metre.
+    unit: Option<&'static str>,
     /// Of everything finite, in the coordinates of the file; `null` if nothing is.
     bounds: Option<Bounds>,
     /// What was taken off all coordinates, since the scene is far from its origin; `null` if nothing was.
@@ -73,6 +80,9 @@ impl Info {
             materials: scene.materials.len(),
             textures: scene.textures.iter().map(describe_texture).collect(),
             cameras: scene.cameras.iter().map(|named| CameraInfo::of(named, scene)).collect(),
+            start: scene.start.to_string(),
+            eye_height: scene.start.eye_height,
+            unit: (scene.start.unit != Unit::Metre).then(|| scene.start.unit.name()),
             bounds: (min.is_finite() && max.is_finite()).then(|| {
                 let [min, max] = [min, max].map(|corner| scene.in_file(corner).to_array());
                 Bounds { min, max }
@@ -99,10 +109,14 @@ impl Info {
             line("textures", &list(&self.textures)),
             line("lights", &with_types(c.lights, &self.lights_by_type)),
             line("cameras", &cameras.collect::<Vec<_>>().join(", ")),
+            line("start", &self.start),
             line("bounds", &bounds),
             line("memory", &format!("{:.1} MiB", c.scene_bytes as f64 / f64::from(1 << 20))),
             line("depth", &format!("{} rays on a path", self.max_depth)),
         ];
+        if let Some(unit) = self.unit {
+            lines.push(line("unit", &format!("{unit} (guessed from the sizes of rooms and streets)")));
+        }
         if let Some(origin) = self.origin {
             let why = "the scene is far from the file's origin; it was moved before its numbers were rounded";
             lines.push(line("origin", &format!("{origin:?} ({why})")));

@@ -22,6 +22,7 @@ pub mod object;
 pub mod path;
 pub mod pick;
 pub mod progress;
+pub mod start;
 pub mod texels;
 pub mod texture;
 
@@ -37,6 +38,7 @@ pub use material::Material;
 pub use object::Object;
 pub use path::CameraPath;
 pub use progress::Progress;
+pub use start::Start;
 pub use texture::Texture;
 
 use crate::geometry::{Aabb, Contacts, Geometry};
@@ -119,6 +121,8 @@ pub struct Scene {
     pub cameras: Vec<NamedCamera>,
     /// Whether the first camera is that of somebody who stands on a floor: a walk starts on foot.
     pub on_foot: bool,
+    /// How the first camera was found.
+    pub start: Start,
     /// The sky around it, if it has one.
     pub environment: Option<Environment>,
     /// What the file asks of the picture.
@@ -149,6 +153,7 @@ impl Scene {
             lights,
             headlight: false,
             cameras: self.cameras.clone(),
+            start: self.start.clone(),
             environment: self.environment.clone(),
             render: self.render.clone(),
             warnings: self.warnings.clone(),

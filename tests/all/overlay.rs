@@ -19,7 +19,7 @@ use raywalk::measure::metric::{METRICS, Score, metric};
 use raywalk::measure::tune::Bound;
 use raywalk::render::FrameStats;
 use raywalk::scene::progress::Step;
-use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene};
+use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene, Start};
 use raywalk::settings::{Kind, PRESETS, ROWS, Settings, Supersample, row};
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -4,11 +4,13 @@ mod allowance;
 mod bounds;
 mod brightness;
 mod dds;
+mod floors;
 mod footprint;
 mod framing;
 mod holes;
 mod image;
 mod interior;
+mod level;
 mod mapping;
 mod model;
 mod object;
@@ -18,9 +20,13 @@ mod placeholder;
 mod placement;
 pub mod probe;
 mod sharing;
+mod spawn;
+mod subject;
+mod surface_samples;
 
 pub use bounds::finite_bounds;
 pub use sharing::Instancing;
+pub use spawn::is_spawn_name;
 
 use super::desc::map::shortened;
 use super::desc::problem::{At, Outcome, Problem, Warnings};
@@ -32,6 +38,7 @@ use super::files::{FileError, Files};
 use super::format::LoadOptions;
 use super::limits::{Limits, exceeded};
 use super::material::{Alpha, Encoding, Model};
+use super::start::Start;
 use super::texture::ImageTexture;
 use super::{Light, Material, NamedCamera, Object, Progress, RenderDefaults, Scene, Texture, next_generation};
 use crate::geometry::{Aabb, Contacts, Geometry, Part};
@@ -47,6 +54,7 @@ use placeholder::Placeholders;
 use placement::Placement;
 pub(super) use probe::Probe;
 use sharing::{Census, Sharing};
+use spawn::Spawn;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
@@ -92,6 +100,8 @@ pub struct SceneBuilder {
     textures: Vec<Texture>,
     lights: Vec<Light>,
     cameras: Vec<NamedCamera>,
+    /// Where players start, if the file says so.
+    spawn: Option<Spawn>,
     render: RenderDefaults,
     warnings: Vec<Warning>,
 }
@@ -123,6 +133,7 @@ impl SceneBuilder {
             textures: Vec::new(),
             lights: Vec::new(),
             cameras: Vec::new(),
+            spawn: None,
             render: RenderDefaults::default(),
             warnings: Vec::new(),
         }
@@ -165,7 +176,7 @@ impl SceneBuilder {
     /// A name that nothing bears, a file that cannot be read, a transform that does not fit its shape,
     /// or a limit that is exceeded.
     pub fn add(&mut self, scene: SceneDesc, warnings: &mut Warnings) -> Outcome<()> {
-        let SceneDesc { render, cameras, textures, materials, lights, objects } = scene;
+        let SceneDesc { render, cameras, spawn, textures, materials, lights, objects } = scene;
         let materials = self.add_materials(materials, &textures, warnings)?;
         let contents = Contents { objects, lights, materials };
         if self.models.is_reading() {
@@ -190,6 +201,11 @@ impl SceneBuilder {
             let CameraDesc { ref name, .. } = camera;
             self.cameras.push(NamedCamera { name: name.clone(), camera: camera.place(self.origin)? });
         }
+        self.spawn = spawn.map(|spawn| Spawn {
+            position: (spawn.position - self.origin).as_vec3(),
+            forward: spawn.forward.map(|forward| forward.as_vec3()),
+            name: spawn.name,
+        });
         Ok(())
     }
 
@@ -341,10 +357,11 @@ impl SceneBuilder {
         let progress = self.progress.clone();
         let wanted = || !progress.is_cancelled();
         let mut probe = Probe::within(&geometry, Allowance::new(STEPS_AROUND, &wanted));
-        let mut on_foot = false;
+        let mut start = Start::AT_CAMERA;
         if self.cameras.is_empty() {
-            let (camera, stands) = framing::start(&mut probe, finite_bounds(&self.objects), &self.render);
-            on_foot = stands;
+            let spawn = self.spawn.take();
+            let (camera, found) = framing::start(&mut probe, self.objects.len(), &self.render, spawn.as_ref());
+            start = found;
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
         }
         let auto_exposure = self.expose(&mut probe);
@@ -362,7 +379,8 @@ impl SceneBuilder {
             lights: self.lights,
             headlight,
             cameras: self.cameras,
-            on_foot,
+            on_foot: start.eye_height.is_some(),
+            start,
             environment: None,
             render: self.render,
             auto_exposure,

@@ -35,6 +35,11 @@ impl<'a> Probe<'a> {
         Self { geometry, stack: Stack::default(), allowance }
     }
 
+    /// What it looks at.
+    pub fn geometry(&self) -> &'a Geometry {
+        self.geometry
+    }
+
     /// Whether it has looked at all that it may: the last answers mean nothing.
     pub fn is_spent(&self) -> bool {
         self.allowance.is_spent()
