@@ -9,6 +9,7 @@ use raywalk::geometry::Aabb;
 use raywalk::measure::counts::SceneCounts;
 use raywalk::render::Plan;
 use raywalk::scene::light::LightKind;
+use raywalk::scene::start::Unit;
 use raywalk::scene::texture::Texture;
 use raywalk::scene::{Light, NamedCamera, Scene};
 use raywalk::settings::Settings;
@@ -38,6 +39,12 @@ struct Info {
     #[serde(skip_serializing_if = "Option::is_none")]
     environment: Option<String>,
     cameras: Vec<CameraInfo>,
+    /// How the first camera was found.
+    start: String,
+    /// How high the eye stands above the floor there, in the file's units; `null` where it stands on none.
+    eye_height: Option<f32>,
+    /// The unit that the sizes tell, where it is not the metre.
+    unit: Option<&'static str>,
     /// Of everything finite, in the coordinates of the file; `null` if nothing is.
     bounds: Option<Bounds>,
     /// What was taken off all coordinates, since the scene is far from its origin; `null` if nothing was.
@@ -77,6 +84,9 @@ impl Info {
             textures: scene.textures.iter().map(describe_texture).collect(),
             environment: scene.environment.as_ref().map(ToString::to_string),
             cameras: scene.cameras.iter().map(|named| CameraInfo::of(named, scene)).collect(),
+            start: scene.start.to_string(),
+            eye_height: scene.start.eye_height,
+            unit: (scene.start.unit != Unit::Metre).then(|| scene.start.unit.name()),
             bounds: (min.is_finite() && max.is_finite()).then(|| {
                 let [min, max] = [min, max].map(|corner| scene.in_file(corner).to_array());
                 Bounds { min, max }
@@ -103,12 +113,16 @@ impl Info {
             line("textures", &list(&self.textures)),
             line("lights", &with_types(c.lights, &self.lights_by_type)),
             line("cameras", &cameras.collect::<Vec<_>>().join(", ")),
+            line("start", &self.start),
             line("bounds", &bounds),
             line("memory", &format!("{:.1} MiB", c.scene_bytes as f64 / f64::from(1 << 20))),
             line("depth", &format!("{} rays on a path", self.max_depth)),
         ];
         if let Some(environment) = &self.environment {
             lines.push(line("environment", environment));
+        }
+        if let Some(unit) = self.unit {
+            lines.push(line("unit", &format!("{unit} (guessed from the sizes of rooms and streets)")));
         }
         if let Some(origin) = self.origin {
             let why = "the scene is far from the file's origin; it was moved before its numbers were rounded";

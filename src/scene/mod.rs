@@ -23,6 +23,7 @@ pub mod path;
 pub mod pick;
 pub mod progress;
 pub mod sky;
+pub mod start;
 pub mod texels;
 pub mod texture;
 
@@ -39,6 +40,7 @@ pub use material::Material;
 pub use object::Object;
 pub use path::CameraPath;
 pub use progress::Progress;
+pub use start::Start;
 pub use texture::Texture;
 
 use crate::geometry::{Aabb, Contacts, Geometry};
@@ -122,10 +124,8 @@ pub struct Scene {
     pub headlight: bool,
     /// Cameras of the file; the first is where a walk starts. Never empty: without one in the file, a view of the bounds.
     pub cameras: Vec<NamedCamera>,
-    /// The file has no camera: the only one was made to show its bounds, or to stand in it.
-    pub framed: bool,
-    /// Whether the first camera is that of somebody who stands on a floor: a walk starts on foot.
-    pub on_foot: bool,
+    /// How the first camera was found.
+    pub start: Start,
     /// The sky around it, if it has one.
     pub environment: Option<Environment>,
     /// What the file asks of the picture.
@@ -156,6 +156,7 @@ impl Scene {
             lights,
             headlight: false,
             cameras: self.cameras.clone(),
+            start: self.start.clone(),
             environment: self.environment.clone(),
             render: self.render.clone(),
             warnings: self.warnings.clone(),

@@ -21,7 +21,7 @@ use raywalk::math::simd;
 use raywalk::measure::tune::Bound;
 use raywalk::render::FrameStats;
 use raywalk::scene::progress::Step;
-use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene};
+use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene, Start};
 use raywalk::settings::{Kind, PRESETS, ROWS, Settings, Supersample, row};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -42,9 +42,8 @@ fn scene() -> Scene {
         lights: Vec::new(),
         headlight: true,
         cameras: vec![named("default"), named("door")],
-        framed: false,
-        on_foot: false,
         environment: None,
+        start: Start::AT_CAMERA,
         render: RenderDefaults::default(),
         auto_exposure: 0.0,
         warnings: Vec::new(),

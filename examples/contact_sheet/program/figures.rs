@@ -2,7 +2,7 @@
 
 use raywalk::measure::table::Table;
 use raywalk::render::Film;
-use raywalk::scene::Scene;
+use raywalk::scene::{Scene, start};
 use serde::Serialize;
 use std::ops::RangeInclusive;
 
@@ -79,7 +79,8 @@ impl Figures {
         }
         let mean = sum / f64::max(count, 1.0);
         let camera = &scene.cameras[0].camera;
-        let floor = scene.on_foot.then(|| scene.pick(camera.eye, -camera.up.normalize_or(glam::Vec3::Y), 0.0));
+        let stands = scene.start.eye_height.is_some();
+        let floor = stands.then(|| scene.pick(camera.eye, -camera.up.normalize_or(glam::Vec3::Y), 0.0));
         let mut figures = Self {
             ok: false,
             faults: Vec::new(),
@@ -88,9 +89,9 @@ impl Figures {
             spread: (squares / f64::max(count, 1.0) - mean * mean).max(0.0).sqrt(),
             width: f64::from(right.saturating_sub(left)) / f64::from(width),
             height: f64::from(bottom.saturating_sub(top)) / f64::from(height),
-            own_camera: !scene.framed,
-            on_foot: scene.on_foot,
-            eye_height: floor.flatten().map(|floor| floor.distance),
+            own_camera: scene.start.entry == start::Entry::Camera,
+            on_foot: stands,
+            eye_height: floor.flatten().map(|floor| floor.distance / scene.start.unit.per_metre()),
         };
         figures.faults = match (scene.objects.is_empty(), count > 0.0) {
             (true, _) => vec!["empty"],

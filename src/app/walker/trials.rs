@@ -3,7 +3,7 @@
 use super::*;
 use crate::geometry::{Part, PrimitiveId, Shape};
 use crate::math::random::SplitMix64;
-use crate::scene::{LoadOptions, load, load_text};
+use crate::scene::{LoadOptions, Start, load, load_text};
 use std::path::Path;
 
 const EYE: f64 = PERSON;
@@ -368,7 +368,8 @@ fn room_scene(on_foot: bool) -> Scene {
             { "type": "box", "min": [-3.1, 0, -3], "max": [-3, 2.5, 3] },
             { "type": "box", "min": [3, 0, -3], "max": [3.1, 2.5, 3] } ] }"#;
     let scene = load_text("room.json", text, &LoadOptions::default()).expect("right");
-    Scene { on_foot, ..scene }
+    let start = Start { eye_height: on_foot.then_some(1.6), ..scene.start.clone() };
+    Scene { start, ..scene }
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! A place to stand in an interior: on the floor, looking into the longest free direction.
 
+use super::level::{EYE_HEIGHT, Stand};
 use super::probe::{Met, Probe, around};
 use crate::geometry::Aabb;
 use crate::scene::Camera;
+use crate::scene::start::Unit;
 use glam::Vec3;
 use std::f64::consts::TAU;
 
@@ -10,10 +12,11 @@ use std::f64::consts::TAU;
 const PLACES: usize = 7;
 /// Shares of the height from which floors are looked for.
 const STOREYS: [f32; 3] = [0.9, 0.6, 0.3];
-/// Eye height of a person, in metres.
-const EYE_HEIGHT: f32 = 1.6;
-/// Least and greatest share of a room's height at which the eye stands: the file may not be in metres.
-const EYE_SHARE: [f32; 2] = [0.15, 0.55];
+/// Greatest share of a room's height at which the eye stands.
+const EYE_SHARE: f32 = 0.7;
+/// Least height of a room, in metres, where the whole scene is higher: else one would stand under tables. Lower scenes are
+/// doll's houses.
+const ROOM: f32 = 1.9;
 /// Directions that tell whether a place is enclosed.
 const LOOKS: usize = 96;
 /// Least share of them that see the front of something, of a place inside.
@@ -23,8 +26,10 @@ const ENCLOSED: f32 = 0.8;
 /// 0.23, of things one or the other is at most 0.18 or 0.13.
 const INSIDE: f32 = 0.2;
 const OPEN: f64 = 0.16;
+/// What lies farther outside of the bounds than this share of their extent is not looked at.
+const BEYOND: f32 = 0.05;
 /// Horizontal directions: of the walls, and tried for the view.
-const VIEWS: usize = 32;
+pub(super) const VIEWS: usize = 32;
 /// Least share of them that see the front of something: a table has no walls.
 const WALLED: f32 = 0.9;
 /// How many of them to either side of a view are in the picture.
@@ -40,6 +45,8 @@ const LEVEL_TOLERANCE: f32 = 0.25;
 /// A place to stand, and what can be seen from there.
 struct Place {
     eye: Vec3,
+    /// How high above the floor.
+    height: f32,
     view: Vec3,
     /// How far it is free.
     free: f32,
@@ -49,10 +56,10 @@ struct Place {
     openness: f64,
 }
 
-/// A camera inside, or `None` where nearly nothing is enclosed, or finding out takes more than the probe may.
+/// A place inside to stand, or `None` where nearly nothing is enclosed, or finding out takes more than the probe may.
 ///
 /// Only what faces the eye counts: the inside of a solid thing shows nothing but backs.
-pub fn stand(probe: &mut Probe, bounds: Aabb) -> Option<Camera> {
+pub fn stand(probe: &mut Probe, bounds: Aabb, unit: Unit) -> Option<Stand> {
     if bounds.is_empty() || bounds.size().min_element() <= 0.0 {
         return None;
     }
@@ -69,9 +76,9 @@ pub fn stand(probe: &mut Probe, bounds: Aabb) -> Option<Camera> {
                 return None;
             }
             let above = bounds.min + bounds.size() * Vec3::new(x, storey, z);
-            let floor = eye_above_floor(probe, above, bounds).filter(|(eye, _)| last.replace(*eye) != Some(*eye));
+            let floor = eye_above_floor(probe, above, bounds, unit).filter(|(eye, _)| last.replace(*eye) != Some(*eye));
             let Some((eye, height)) = floor else { continue };
-            let Some(place) = directions.place(probe, eye, height) else { continue };
+            let Some(place) = directions.place(probe, eye, height, bounds) else { continue };
             is_inside = true;
             openness = openness.max(place.openness);
             if best.as_ref().is_none_or(|best| place.score > best.score) {
@@ -87,9 +94,9 @@ pub fn stand(probe: &mut Probe, bounds: Aabb) -> Option<Camera> {
     let size = bounds.size().as_dvec3();
     let open = libm::log(OPEN * libm::hypot(size.x, size.z));
     let is_interior = inside as f32 >= INSIDE * with_floor as f32 && openness >= open;
-    let Place { eye, view, free, .. } = best.filter(|_| is_interior)?;
+    let Place { eye, height, view, free, .. } = best.filter(|_| is_interior)?;
     let camera = Camera { eye, look_at: eye + view * free.max(eye.abs().max_element() * 1e-3), ..Camera::default() };
-    camera.is_valid().then_some(camera)
+    camera.is_valid().then_some(Stand { camera, eye_height: height })
 }
 
 /// Where it is looked from a place.
@@ -101,18 +108,22 @@ struct Directions {
 }
 
 impl Directions {
-    /// What there is to see at `eye`, so high above the floor; `None` where that is not inside of a room.
-    fn place(&self, probe: &mut Probe, eye: Vec3, height: f32) -> Option<Place> {
-        let walls = probe.look(eye, &self.views, 0.0);
-        if !mostly_fronts(&walls, &self.views, WALLED) {
-            return None;
-        }
-        if !mostly_fronts(&probe.look(eye, &self.looks, 0.0), &self.looks, ENCLOSED) {
+    /// What there is to see at `eye`, so high above the floor; `None` where that is not inside of a room. Skies and strays
+    /// beyond `bounds` are no walls.
+    fn place(&self, probe: &mut Probe, eye: Vec3, height: f32, bounds: Aabb) -> Option<Place> {
+        let around = bounds.padded(bounds.size().max_element() * BEYOND);
+        let mut look = |looks: &[Vec3]| {
+            let met = probe.look(eye, looks, 0.0).into_iter().zip(looks);
+            let is_part = |met: &Met, look: &Vec3| look.y < 0.0 || around.holds(eye + *look * met.distance);
+            met.map(|(met, look)| met.filter(|met| is_part(met, look))).collect::<Vec<_>>()
+        };
+        let walls = look(&self.views);
+        if !mostly_fronts(&walls, &self.views, WALLED) || !mostly_fronts(&look(&self.looks), &self.looks, ENCLOSED) {
             return None;
         }
         // What leads out of the scene is no view.
         let free: Vec<f32> = walls.iter().map(|met| met.map_or(0.0, |met| met.distance)).collect();
-        self.is_floor_level(probe, eye, height, &free).then(|| self.widest(eye, &free))?
+        self.is_floor_level(probe, eye, height, &free).then(|| self.widest(eye, height, &free))?
     }
 
     fn is_floor_level(&self, probe: &mut Probe, eye: Vec3, height: f32, free: &[f32]) -> bool {
@@ -127,14 +138,17 @@ impl Directions {
     }
 
     /// The view that is free the farthest, ahead and over all of the picture: a gap between two pillars is none.
-    fn widest(&self, eye: Vec3, free: &[f32]) -> Option<Place> {
+    fn widest(&self, eye: Vec3, height: f32, free: &[f32]) -> Option<Place> {
         let far = |i: usize| libm::log(f64::from(free[i].max(f32::MIN_POSITIVE)));
         let mean = |middle: usize| {
             let picture = (0..=2 * SIDES).map(|side| far((middle + VIEWS + side - SIDES) % VIEWS));
             picture.sum::<f64>() / (2 * SIDES + 1) as f64
         };
         let openness = (0..VIEWS).map(mean).max_by(f64::total_cmp)?;
-        let place = |i: usize| Place { eye, view: self.views[i], free: free[i], score: far(i) + mean(i), openness };
+        let place = |i: usize| {
+            let (view, free, score) = (self.views[i], free[i], far(i) + mean(i));
+            Place { eye, height, view, free, score, openness }
+        };
         (0..VIEWS).map(place).max_by(|a, b| a.score.total_cmp(&b.score))
     }
 }
@@ -146,17 +160,19 @@ fn mostly_fronts(met: &[Option<Met>], looks: &[Vec3], share: f32) -> bool {
 }
 
 /// The eye of somebody who stands on the floor below a point, and how high above it.
-fn eye_above_floor(probe: &mut Probe, above: Vec3, bounds: Aabb) -> Option<(Vec3, f32)> {
+fn eye_above_floor(probe: &mut Probe, above: Vec3, bounds: Aabb, unit: Unit) -> Option<(Vec3, f32)> {
     let floor = probe.look_along(above, Vec3::NEG_Y, 0.0).filter(|met| met.normal.y > 0.5)?;
     let step = bounds.size().y * 1e-4;
     let ground = above - Vec3::Y * (floor.distance - step);
     let room = probe.look_along(ground, Vec3::Y, 0.0).map_or(bounds.max.y - ground.y, |met| met.distance);
-    let [least, greatest] = EYE_SHARE.map(|share| share * room);
-    let height = EYE_HEIGHT.clamp(least, greatest);
-    (room > step).then_some((ground + Vec3::Y * height, height))
+    let metre = unit.per_metre();
+    let least = if bounds.size().y >= ROOM * metre { ROOM * metre } else { step };
+    let height = (EYE_HEIGHT * metre).min(EYE_SHARE * room);
+    (room > least).then_some((ground + Vec3::Y * height, height))
 }
 
-fn horizontal() -> Vec<Vec3> {
+/// [`VIEWS`] horizontal directions, in order.
+pub(super) fn horizontal() -> Vec<Vec3> {
     let direction = |i: usize| {
         let angle = TAU * i as f64 / VIEWS as f64;
         Vec3::new(libm::cos(angle) as f32, 0.0, libm::sin(angle) as f32).normalize()
@@ -189,8 +205,9 @@ mod tests {
     #[test]
     fn a_room_is_entered_at_eye_height_and_seen_along_its_length() {
         let (geometry, bounds) = room(Vec3::new(-1.0, 0.0, -6.0), Vec3::new(1.0, 3.0, 6.0), true);
-        let camera = stand(&mut Probe::new(&geometry), bounds).unwrap();
+        let Stand { camera, eye_height } = stand(&mut Probe::new(&geometry), bounds, Unit::Metre).unwrap();
         assert!((camera.eye.y - 1.6).abs() < 0.01, "{}", camera.eye);
+        assert!((eye_height - 1.6).abs() < 0.01, "{eye_height}");
         let view = camera.look_at - camera.eye;
         assert!(view.z.abs() > 6.0 && view.x.abs() < 0.3 * view.z.abs() && view.y == 0.0, "{view}");
     }
@@ -198,7 +215,7 @@ mod tests {
     #[test]
     fn a_solid_box_is_not_entered() {
         let (geometry, bounds) = room(Vec3::splat(-1.0), Vec3::ONE, false);
-        assert_eq!(stand(&mut Probe::new(&geometry), bounds), None);
-        assert_eq!(stand(&mut Probe::new(&Geometry::default()), Aabb::EMPTY), None);
+        assert_eq!(stand(&mut Probe::new(&geometry), bounds, Unit::Metre), None);
+        assert_eq!(stand(&mut Probe::new(&Geometry::default()), Aabb::EMPTY, Unit::Metre), None);
     }
 }

@@ -3,6 +3,7 @@
 use super::brightness::{self, Point};
 use super::probe::{Probe, around};
 use super::{AMBIENT_SHARE, MOST_STOPS, WHITE};
+use crate::geometry::Aabb;
 use crate::scene::environment::{Environment, Sky};
 use crate::scene::light::{Falloff, LightKind};
 use crate::scene::material::{Lookup, Model};
@@ -17,8 +18,8 @@ const LOOKS: usize = 128;
 const ROOFED: f32 = 0.8;
 /// Towards the key light, for somebody who looks along -Z: from the left above, somewhat behind them.
 const TOWARDS_KEY: Vec3 = Vec3::new(-0.5, 0.85, 0.62);
-/// How far away it is, as a share of how far away what is seen from outside is: so near, it lights flat things unevenly.
-const KEY_DISTANCE: f32 = 0.85;
+/// How far it is from the middle of what is seen from outside, in radii of that.
+const KEY_DISTANCE: f32 = 1.7;
 /// What the key light gives a white surface that faces it, as a share of full brightness; the studio gives it the rest.
 const KEY: f32 = 0.62;
 /// What is lit by the key light and the studio is as bright as its colour is.
@@ -47,8 +48,8 @@ pub struct Lit<'a> {
     pub objects: &'a [Object],
     pub materials: &'a [Material],
     pub textures: &'a [Texture],
-    /// The camera looks at the middle of all there is, from outside of it.
-    pub is_framed: bool,
+    /// The bounds of what the camera shows from outside, if it does.
+    pub framed: Option<Aabb>,
     /// The file leaves exposure to the viewer: its lights may be in any unit.
     pub is_exposed: bool,
 }
@@ -93,14 +94,14 @@ impl Lit<'_> {
         let is_key_lit = lights.is_empty() && !self.is_roofed();
         if is_key_lit {
             let white = KEY * if self.is_physical() { std::f32::consts::PI } else { 1.0 };
-            let Camera { eye, look_at, .. } = self.camera;
-            let distance = eye.distance(look_at) * KEY_DISTANCE;
-            let position = look_at + towards_key * distance;
-            let at_position = white * distance * distance;
-            let (kind, strength, falloff) = match self.is_framed && at_position.is_normal() && position.is_finite() {
-                true => (LightKind::Point { position }, at_position, Falloff::InverseSquare),
-                false => (LightKind::Directional { direction: -towards_key }, white, Falloff::None),
-            };
+            let sun = (LightKind::Directional { direction: -towards_key }, white, Falloff::None);
+            // Near what is small, it lights flat things unevenly, too.
+            let near = self.framed.map(|subject| {
+                let distance = subject.size().length() / 2.0 * KEY_DISTANCE;
+                let position = subject.center() + towards_key * distance;
+                (LightKind::Point { position }, white * distance * distance, Falloff::InverseSquare)
+            });
+            let (kind, strength, falloff) = near.filter(|(_, strength, _)| strength.is_normal()).unwrap_or(sun);
             let key = Light { name: Some("key".to_owned()), kind, color: Vec3::splat(strength), falloff };
             let environment = studio((1.0 - KEY) / full);
             let stops = self.adjusted(KEY_STOPS, std::slice::from_ref(&key), &environment);
@@ -232,7 +233,7 @@ struct Colors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Aabb, Geometry, Part, PrimitiveId, Shape};
+    use crate::geometry::{Geometry, Part, PrimitiveId, Shape};
     use crate::scene::object::Mapping;
 
     /// A ball on the ground, or in a closed box.
@@ -263,7 +264,7 @@ mod tests {
             objects: &[object.clone(), object],
             materials: &[material],
             textures: &[],
-            is_framed: false,
+            framed: None,
             is_exposed: true,
         };
         let lighting = lit.in_studio(lights);

@@ -4,11 +4,13 @@ mod allowance;
 mod bounds;
 mod brightness;
 mod dds;
+mod floors;
 mod footprint;
 mod framing;
 mod holes;
 mod image;
 mod interior;
+mod level;
 mod lighting;
 mod mapping;
 mod model;
@@ -20,10 +22,14 @@ mod placement;
 pub mod probe;
 mod sharing;
 mod sky;
+mod spawn;
+mod subject;
+mod surface_samples;
 mod surroundings;
 
 pub use bounds::finite_bounds;
 pub use sharing::Instancing;
+pub use spawn::is_spawn_name;
 pub use surroundings::read_sky;
 
 use super::desc::map::shortened;
@@ -37,6 +43,7 @@ use super::files::{FileError, Files};
 use super::format::{Format, LoadOptions};
 use super::limits::{Limits, exceeded};
 use super::material::{Alpha, Encoding};
+use super::start::{Entry, Start};
 use super::texture::ImageTexture;
 use super::{Light, Material, NamedCamera, Object, Progress, RenderDefaults, Scene, Texture, next_generation};
 use crate::geometry::{Aabb, Contacts, Geometry, Part};
@@ -53,6 +60,7 @@ use placeholder::Placeholders;
 use placement::Placement;
 pub(super) use probe::Probe;
 use sharing::{Census, Sharing};
+use spawn::Spawn;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -97,6 +105,8 @@ pub struct SceneBuilder {
     textures: Vec<Texture>,
     lights: Vec<Light>,
     cameras: Vec<NamedCamera>,
+    /// Where players start, if the file says so.
+    spawn: Option<Spawn>,
     render: RenderDefaults,
     /// What surrounds the scene, by its file or by what was asked for.
     environment: Option<Environment>,
@@ -133,6 +143,7 @@ impl SceneBuilder {
             textures: Vec::new(),
             lights: Vec::new(),
             cameras: Vec::new(),
+            spawn: None,
             render: RenderDefaults::default(),
             environment: None,
             studio: !format.says_how_it_is_lit,
@@ -178,7 +189,7 @@ impl SceneBuilder {
     /// A name that nothing bears, a file that cannot be read, a transform that does not fit its shape,
     /// or a limit that is exceeded.
     pub fn add(&mut self, scene: SceneDesc, warnings: &mut Warnings) -> Outcome<()> {
-        let SceneDesc { render, environment, cameras, textures, materials, lights, objects } = scene;
+        let SceneDesc { render, environment, cameras, spawn, textures, materials, lights, objects } = scene;
         let materials = self.add_materials(materials, &textures, warnings)?;
         let contents = Contents { objects, lights, materials };
         if self.models.is_reading() {
@@ -204,6 +215,11 @@ impl SceneBuilder {
             let CameraDesc { ref name, .. } = camera;
             self.cameras.push(NamedCamera { name: name.clone(), camera: camera.place(self.origin)? });
         }
+        self.spawn = spawn.map(|spawn| Spawn {
+            position: (spawn.position - self.origin).as_vec3(),
+            forward: spawn.forward.map(|forward| forward.as_vec3()),
+            name: spawn.name,
+        });
         Ok(())
     }
 
@@ -350,11 +366,11 @@ impl SceneBuilder {
         let progress = self.progress.clone();
         let wanted = || !progress.is_cancelled();
         let mut probe = Probe::within(&geometry, Allowance::new(STEPS_AROUND, &wanted));
-        let framed = self.cameras.is_empty();
-        let mut on_foot = false;
-        if framed {
-            let (camera, stands) = framing::start(&mut probe, finite_bounds(&self.objects), &self.render);
-            on_foot = stands;
+        let (mut start, mut subject) = (Start::AT_CAMERA, Aabb::EMPTY);
+        if self.cameras.is_empty() {
+            let spawn = self.spawn.take();
+            let (camera, found, bounds) = framing::start(&mut probe, self.objects.len(), &self.render, spawn.as_ref());
+            (start, subject) = (found, bounds);
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
         }
         let mut lit = Lit {
@@ -363,7 +379,7 @@ impl SceneBuilder {
             objects: &self.objects,
             materials: &self.materials,
             textures: &self.textures,
-            is_framed: framed && !on_foot,
+            framed: (start.entry == Entry::Framed && !subject.is_empty()).then_some(subject),
             is_exposed: self.render.exposure == Exposure::Auto,
         };
         let lights = std::mem::take(&mut self.lights);
@@ -399,8 +415,7 @@ impl SceneBuilder {
             lights,
             headlight,
             cameras: self.cameras,
-            framed,
-            on_foot,
+            start,
             environment,
             render: self.render,
             auto_exposure: stops,

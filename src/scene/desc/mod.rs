@@ -76,6 +76,17 @@ impl CameraDesc {
     }
 }
 
+/// Where a scene file lets players start.
+#[derive(Clone, Debug)]
+pub struct SpawnDesc {
+    /// Its name.
+    pub name: String,
+    /// Where it is.
+    pub position: DVec3,
+    /// Where players look to, if it says so.
+    pub forward: Option<DVec3>,
+}
+
 /// What a scene file says.
 #[derive(Debug, Default)]
 pub struct SceneDesc {
@@ -85,6 +96,8 @@ pub struct SceneDesc {
     pub environment: Option<EnvironmentDesc>,
     /// Cameras; the unnamed one first.
     pub cameras: Vec<CameraDesc>,
+    /// Where players start.
+    pub spawn: Option<SpawnDesc>,
     /// Textures by name.
     pub textures: Vec<TextureDesc>,
     /// Materials by name.

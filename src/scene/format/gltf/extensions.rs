@@ -3,6 +3,7 @@
 use super::fault::{Fault, Notes, Read};
 use super::instancing;
 use super::root::{Required, Root};
+use super::spawn;
 use crate::scene::desc::map::shortened;
 
 /// Extensions that are read in full.
@@ -17,6 +18,7 @@ const KNOWN: &[&str] = &[
     "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
+    spawn::EXTENSION,
 ];
 
 /// Extensions that are read in part, and what is left out.

@@ -14,7 +14,7 @@
 //! | [`objects`] | what nodes draw: each primitive read once, and placed wherever it stands |
 //! | [`mesh`] | primitives; [`topology`], [`tangents`] and [`skin`] for their triangles, normal maps and joints |
 //! | [`material`] | materials; [`texture`] for their textures, images and samplers |
-//! | [`light`], [`camera`] | what stands at nodes besides meshes |
+//! | [`light`], [`camera`], [`spawn`] | what stands at nodes besides meshes |
 //!
 //! What is damaged or odd costs the smallest part that holds it, and a warning ([`fault`]): an attribute, a triangle, a
 //! texture. Refused is what is no glTF at all, asks for more than a limit, or needs an extension for its meshes.
@@ -38,6 +38,7 @@ mod repair;
 mod root;
 mod schema;
 mod skin;
+mod spawn;
 mod tangents;
 mod text;
 mod texture;
@@ -147,6 +148,7 @@ fn describe(
         },
         environment: None,
         cameras: camera::cameras(document, &nodes, || objects::bounds(&objects), report)?,
+        spawn: spawn::spawn(document, &nodes),
         textures: textures.descs,
         materials: materials.descs,
         lights: light::lights(document, &nodes, report)?,
