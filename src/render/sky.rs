@@ -9,7 +9,9 @@ use super::skin::Skin;
 use super::tables::{MIRROR_ROUGHNESS, Row};
 use crate::math::V3;
 use crate::math::arctangent::atan2;
-use crate::scene::sky::{Blurred, GlossyLevel, Irradiance, LEAST_ROUGHNESS, Lobe, Radiance, SkyLight, SkyMap, Smooth};
+use crate::scene::sky::{
+    BRIGHTEST, Blurred, GlossyLevel, Irradiance, LEAST_ROUGHNESS, Lobe, Radiance, SkyLight, SkyMap, Smooth,
+};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use std::f32::consts::{FRAC_1_PI, TAU};
@@ -67,7 +69,7 @@ fn radiance<S: Simd>(simd: S, sky: &SkyLight, direction: V3<S::f32s>) -> V3<S::f
                 #[inline(always)]
                 |lane| interpolated(image.map(), place.lane(lane)),
             );
-            found.scale(S::f32s::splat(simd, *intensity))
+            bounded::<S>(found.scale(S::f32s::splat(simd, *intensity)))
         }
     }
 }
@@ -98,7 +100,7 @@ fn glossy<S: Simd>(simd: S, sky: &SkyLight, direction: V3<S::f32s>, roughness: S
                 #[inline(always)]
                 |lane| between_levels(image.blurred(), place.lane(lane), roughness[lane]),
             );
-            found.scale(S::f32s::splat(simd, *intensity))
+            bounded::<S>(found.scale(S::f32s::splat(simd, *intensity)))
         }
     }
 }
@@ -230,6 +232,12 @@ impl<S: Simd> Place<S> {
     fn lane(&self, lane: usize) -> [f32; 2] {
         [self.across[lane], self.down[lane]]
     }
+}
+
+/// The same light, but finite.
+#[inline(always)]
+fn bounded<S: Simd>(light: V3<S::f32s>) -> V3<S::f32s> {
+    V3::new(light.x.min(BRIGHTEST), light.y.min(BRIGHTEST), light.z.min(BRIGHTEST))
 }
 
 #[inline(always)]

@@ -10,7 +10,7 @@ use crate::scene::material::{Lookup, Model};
 use crate::scene::sky::{SkyLight, luminance};
 use crate::scene::texture::linear_to_srgb;
 use crate::scene::{Camera, Light, Material, Object, Texture};
-use glam::Vec3;
+use glam::{DVec2, Vec3};
 use std::f64::consts::PI;
 
 /// Directions upwards that tell whether there is a ceiling, and the least share of them that meet something below one.
@@ -27,6 +27,9 @@ const KEY_STOPS: f64 = 0.0;
 /// Mean brightness of what is seen, as displays show it, that exposure aims at, and how far it may go for it.
 const SHOWN: [f64; 2] = [0.35, 0.62];
 const MOST_ADJUSTMENT: f64 = 5.0;
+/// Mean luminance that it aims at least at, unless the greatest channel is full on the whole.
+const LEAST_LUMINANCE: f64 = 0.22;
+const FULL_PEAK: f64 = 0.96;
 
 /// How a scene is lit.
 pub struct Lighting {
@@ -181,28 +184,30 @@ impl Lit<'_> {
         if light.is_empty() || self.probe.is_spent() {
             return stops;
         }
+        // Mean luminance and mean greatest channel, as displays show them.
         let shown = |stops: f64| {
             let gain = libm::exp2(stops) as f32;
             let display = |light: &Vec3| {
                 let encoded = (*light * gain).to_array().map(|channel| f32::from(linear_to_srgb(channel)) / 255.0);
-                // What is of one pure colour cannot be as bright as grey is: there the colour itself counts, too.
                 let encoded = Vec3::from_array(encoded);
-                f64::from(luminance(encoded) + encoded.max_element()) / 2.0
+                DVec2::new(luminance(encoded).into(), encoded.max_element().into())
             };
-            light.iter().map(display).sum::<f64>() / light.len() as f64
+            light.iter().map(display).sum::<DVec2>() / light.len() as f64
         };
-        let [least, most] = SHOWN;
-        let now = shown(stops);
-        let (aim, range) = match now {
-            _ if now < least => (least, [stops, stops + MOST_ADJUSTMENT]),
-            _ if now > most => (most, [stops - MOST_ADJUSTMENT, stops]),
-            _ => return stops,
+        // What is of one pure colour cannot be as bright as grey is: there the colour itself counts, too.
+        let is_dark = |stops: f64| {
+            let DVec2 { x: luminance, y: peak } = shown(stops);
+            (luminance + peak) / 2.0 < SHOWN[0] || luminance < LEAST_LUMINANCE && peak < FULL_PEAK
         };
-        // It rises with the stops.
-        let [mut low, mut high] = range;
+        let is_bright = |stops: f64| shown(stops).element_sum() / 2.0 > SHOWN[1];
+        let (too_low, [mut low, mut high]): (&dyn Fn(f64) -> bool, _) = match () {
+            () if is_dark(stops) => (&is_dark, [stops, stops + MOST_ADJUSTMENT]),
+            () if is_bright(stops) => (&|stops| !is_bright(stops), [stops - MOST_ADJUSTMENT, stops]),
+            () => return stops,
+        };
         for _ in 0..24 {
             let middle = (low + high) / 2.0;
-            *if shown(middle) < aim { &mut low } else { &mut high } = middle;
+            *if too_low(middle) { &mut low } else { &mut high } = middle;
         }
         ((low + high) / 2.0).clamp(-MOST_STOPS, MOST_STOPS)
     }

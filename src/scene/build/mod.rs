@@ -373,6 +373,10 @@ impl SceneBuilder {
             (start, subject) = (found, bounds);
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
         }
+        if self.lights.is_empty() && self.environment.as_ref().is_none_or(|environment| environment.sky == Sky::Studio)
+        {
+            self.materials.iter_mut().filter(|material| material.is_stand_in).for_each(Material::take_metal);
+        }
         let mut lit = Lit {
             probe,
             camera: self.cameras[0].camera,
@@ -397,9 +401,6 @@ impl SceneBuilder {
         self.render.ambient = ambient.unwrap_or(if own { self.render.ambient } else { Vec3::ZERO });
         if is_exposed {
             self.render.exposure = Exposure::Auto;
-        }
-        if headlight {
-            self.materials.iter_mut().filter(|material| material.is_stand_in).for_each(Material::take_metal);
         }
         Some(Scene {
             name: self.name,

@@ -1,6 +1,6 @@
 //! Irradiance by moments up to the second order.
 
-use super::turned;
+use super::{bounded, turned};
 use glam::{DMat3, DVec3, Vec3};
 use std::f64::consts::TAU;
 
@@ -77,7 +77,7 @@ impl Moments {
             yz * (2.0 * square),
             zx * (2.0 * square),
         ];
-        Irradiance { terms: terms.map(|term| term.as_vec3()) }
+        Irradiance { terms: terms.map(|term| bounded(term.as_vec3())) }
     }
 }
 
@@ -106,7 +106,7 @@ impl Irradiance {
 
     /// That of so many times the radiance.
     pub fn scaled(&self, factor: f32) -> Self {
-        Self { terms: self.terms.map(|term| term * factor) }
+        Self { terms: self.terms.map(|term| bounded(term * factor)) }
     }
 
     /// That of the sky turned to the left about +Y by the angle of this cosine and sine.

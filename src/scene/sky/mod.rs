@@ -78,6 +78,14 @@ fn turned(direction: DVec3, [cos, sin]: [f64; 2]) -> DVec3 {
     DVec3::new(x * cos + z * sin, y, z * cos - x * sin)
 }
 
+/// Radiance beyond which sums in single precision would not stay finite.
+pub const BRIGHTEST: f32 = 1e30;
+
+/// A colour, or what makes it up, within what sums stay finite for.
+fn bounded(color: Vec3) -> Vec3 {
+    color.clamp(Vec3::splat(-BRIGHTEST), Vec3::splat(BRIGHTEST))
+}
+
 /// Luminance of linear sRGB.
 pub fn luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))

@@ -1,7 +1,7 @@
 //! Skies in closed form: a gradient from the horizon up and down, and soft lights in it.
 
 use super::super::environment::Gradient;
-use super::turned;
+use super::{BRIGHTEST, bounded, turned};
 use glam::{DVec3, Vec3};
 
 /// base + slope y + bend |y|, y being the sine of the elevation, and the light of lobes.
@@ -72,10 +72,10 @@ impl Smooth {
     /// So many times as bright.
     pub fn scaled(&self, factor: f32) -> Self {
         Self {
-            base: self.base * factor,
-            slope: self.slope * factor,
-            bend: self.bend * factor,
-            lobes: self.lobes.iter().map(|lobe| Lobe { peak: lobe.peak * factor, ..*lobe }).collect(),
+            base: bounded(self.base * factor),
+            slope: bounded(self.slope * factor),
+            bend: bounded(self.bend * factor),
+            lobes: self.lobes.iter().map(|lobe| Lobe { peak: (lobe.peak * factor).min(BRIGHTEST), ..*lobe }).collect(),
         }
     }
 
