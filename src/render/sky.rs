@@ -6,7 +6,7 @@ use super::frame::Frame;
 use super::materials::Materials;
 use super::queue::{MOST_LANES, RayQueue};
 use super::skin::Skin;
-use super::tables::{MIRROR_ROUGHNESS, Row};
+use super::tables::{FlatMaterial, MIRROR_ROUGHNESS, Row};
 use crate::math::V3;
 use crate::math::arctangent::atan2;
 use crate::scene::sky::{
@@ -42,7 +42,7 @@ pub(super) fn beyond<S: Simd>(simd: S, frame: &Frame<'_>, level: u32, rays: &Ray
     let direction = rays.direction.load(simd, at);
     let behind = match &sky.backdrop {
         _ if !sky.light.backdrop => background,
-        Some(shown) => smooth(simd, shown, direction),
+        Some(shown) => in_steps(simd, shown, direction),
         None => return radiance(simd, sky.light, direction),
     };
     if level == 1 {
@@ -72,6 +72,16 @@ fn radiance<S: Simd>(simd: S, sky: &SkyLight, direction: V3<S::f32s>) -> V3<S::f
             bounded::<S>(found.scale(S::f32s::splat(simd, *intensity)))
         }
     }
+}
+
+/// Steps from the horizon up, and down: fewer than displays have shades, so that they are not seen.
+const STEPS: f32 = 64.0;
+
+/// The gradient of a sky in steps. Packets within one of them are encoded as one colour, as plain backgrounds are.
+#[inline(always)]
+fn in_steps<S: Simd>(simd: S, sky: &Smooth, direction: V3<S::f32s>) -> V3<S::f32s> {
+    let y = (direction.y * STEPS).floor() * (1.0 / STEPS);
+    V3::splat(simd, sky.base) + V3::splat(simd, sky.slope).scale(y) + V3::splat(simd, sky.bend).scale(y.abs())
 }
 
 #[inline(always)]
@@ -137,11 +147,19 @@ const LOBE_BLUR: f32 = 1.0;
 #[inline(always)]
 fn irradiance<S: Simd>(simd: S, irradiance: &Irradiance, normal: V3<S::f32s>) -> V3<S::f32s> {
     let V3 { x, y, z } = normal;
-    let [one, linear_x, linear_y, linear_z, xx, yy, xy, yz, zx] = irradiance.terms;
-    let mut sum = V3::splat(simd, one);
-    let factors = [x, y, z, x * x, y * y, x * y, y * z, z * x];
-    for (color, factor) in [linear_x, linear_y, linear_z, xx, yy, xy, yz, zx].into_iter().zip(factors) {
-        sum = sum + V3::splat(simd, color).scale(factor);
+    let Irradiance { around_y: [one, linear, square], others, grey } = irradiance;
+    let mut sum = V3::splat(simd, *one) + V3::splat(simd, *linear).scale(y) + V3::splat(simd, *square).scale(y * y);
+    let factors = [x, z, x * x, x * y, y * z, z * x];
+    if *grey {
+        let mut light = S::f32s::splat(simd, 0.0);
+        for (color, factor) in others.iter().zip(factors) {
+            light += factor * color.x;
+        }
+        sum = sum + V3::all(light);
+    } else {
+        for (color, factor) in others.iter().zip(factors) {
+            sum = sum + V3::splat(simd, *color).scale(factor);
+        }
     }
     V3::new(sum.x.max(0.0), sum.y.max(0.0), sum.z.max(0.0))
 }
@@ -187,13 +205,21 @@ pub(super) fn reflected<S: Simd>(
         let along = normal.dot(to_viewer);
         let cosine = along.max(0.0).min(1.0);
         let [scaled, added] = split_sum(simd, cosine, skin.roughness);
-        let f0 = skin.f0(simd, materials);
-        let once = f0.scale(scaled) + V3::all(added);
-        // What leaves a rough surface after several reflections (Fdez-Agüera, JCGT 2019).
         let lost = one - (scaled + added);
-        let average = f0.scale(S::f32s::splat(simd, 20.0 / 21.0)) + V3::all(S::f32s::splat(simd, 1.0 / 21.0));
-        let again = average.scale(lost);
-        let again = once * V3::new(again.x / (one - again.x), again.y / (one - again.y), again.z / (one - again.z));
+        // What one channel reflects at once, and after several reflections between the bumps (Fdez-Agüera, JCGT 2019).
+        let channel = |f0: S::f32s| {
+            let once = f0 * scaled + added;
+            let again = (f0 * (20.0 / 21.0) + 1.0 / 21.0) * lost;
+            [once, once * (again / (one - again))]
+        };
+        let f0 = skin.f0(simd, materials);
+        let ([x, again_x], grey) = (channel(f0.x), !materials.any(FlatMaterial::may_be_metal));
+        let (once, again) = if grey {
+            (V3::all(x), V3::all(again_x))
+        } else {
+            let ([y, again_y], [z, again_z]) = (channel(f0.y), channel(f0.z));
+            (V3::new(x, y, z), V3::new(again_x, again_y, again_z))
+        };
         let reflecting = once + again;
         let diffuse = opacity * skin.color.scale(one - skin.metallic);
         let mut own = (again + diffuse * (V3::all(one) - reflecting)) * arriving;

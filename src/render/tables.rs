@@ -191,6 +191,11 @@ impl FlatMaterial {
         self.rows[row as usize..row as usize + values.len()].copy_from_slice(values);
     }
 
+    /// Whether what it reflects has a colour.
+    pub fn may_be_metal(&self) -> bool {
+        self.metallic_roughness && self.rows[Row::Metallic as usize] != 0.0
+    }
+
     /// Whether its light varies by more than its colour: what is interpolated would be missing something.
     pub fn is_uneven(&self) -> bool {
         let Maps { metallic_roughness, occlusion, .. } = &self.maps;

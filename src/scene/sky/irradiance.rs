@@ -10,9 +10,16 @@ use std::f64::consts::TAU;
 /// weakens the three orders by 1, 2/3 and 1/4.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Irradiance {
-    /// Colours that multiply 1; x, y, z; xx - zz, yy - zz (M's diagonal is -both sums to 0), xy, yz, zx.
-    pub terms: [Vec3; 9],
+    /// Colours that multiply 1, y and yy.
+    pub around_y: [Vec3; 3],
+    /// Colours that multiply x, z, xx, xy, yz and zx; zz is taken from 1, xx and yy.
+    pub others: [Vec3; 6],
+    /// Whether the latter are the same in all channels.
+    pub grey: bool,
 }
+
+/// What channels may differ by, as a share of the greatest, to be one grey.
+const SAME: f32 = 1e-6;
 
 /// Directions of the quadrature, from pole to pole and around: of equal solid angles.
 const ROWS: usize = 64;
@@ -77,7 +84,7 @@ impl Moments {
             yz * (2.0 * square),
             zx * (2.0 * square),
         ];
-        Irradiance { terms: terms.map(|term| bounded(term.as_vec3())) }
+        Irradiance::of_terms(terms.map(|term| term.as_vec3()))
     }
 }
 
@@ -97,16 +104,30 @@ impl Irradiance {
         moments.irradiance()
     }
 
+    /// Of the colours that multiply 1, x, y, z, xx, yy, xy, yz, zx.
+    fn of_terms(terms: [Vec3; 9]) -> Self {
+        let [one, x, y, z, xx, yy, xy, yz, zx] = terms.map(bounded);
+        let others = [x, z, xx, xy, yz, zx];
+        let most = one.abs().max_element() * SAME;
+        let grey = others.iter().all(|term| (*term - Vec3::splat(term.x)).abs().max_element() <= most);
+        Self { around_y: [one, y, yy], others, grey }
+    }
+
+    fn terms(&self) -> [Vec3; 9] {
+        let ([one, y, yy], [x, z, xx, xy, yz, zx]) = (self.around_y, self.others);
+        [one, x, y, z, xx, yy, xy, yz, zx]
+    }
+
     /// Irradiance over π of a surface with this unit normal.
     pub fn over_pi(&self, normal: Vec3) -> Vec3 {
         let Vec3 { x, y, z } = normal;
         let factors = [1.0, x, y, z, x * x, y * y, x * y, y * z, z * x];
-        self.terms.iter().zip(factors).map(|(&term, factor)| term * factor).sum::<Vec3>().max(Vec3::ZERO)
+        self.terms().iter().zip(factors).map(|(&term, factor)| term * factor).sum::<Vec3>().max(Vec3::ZERO)
     }
 
     /// That of so many times the radiance.
     pub fn scaled(&self, factor: f32) -> Self {
-        Self { terms: self.terms.map(|term| bounded(term * factor)) }
+        Self::of_terms(self.terms().map(|term| term * factor))
     }
 
     /// That of the sky turned to the left about +Y by the angle of this cosine and sine.
@@ -114,7 +135,7 @@ impl Irradiance {
         let back = [turn[0], -turn[1]];
         // Columns are what x, y, z of the turned sky are in the sky as it was.
         let from = DMat3::from_cols(turned(DVec3::X, back), DVec3::Y, turned(DVec3::Z, back));
-        let [one, x, y, z, xx, yy, xy, yz, zx] = self.terms.map(|term| term.as_dvec3());
+        let [one, x, y, z, xx, yy, xy, yz, zx] = self.terms().map(|term| term.as_dvec3());
         let mut terms = [DVec3::ZERO; 9];
         for channel in 0..3 {
             let first = DVec3::new(x[channel], y[channel], z[channel]);
@@ -142,7 +163,7 @@ impl Irradiance {
                 term[channel] = value;
             }
         }
-        Self { terms: terms.map(|term| term.as_vec3()) }
+        Self::of_terms(terms.map(|term| term.as_vec3()))
     }
 }
 
@@ -193,7 +214,7 @@ mod tests {
         let turn = [angle.cos(), angle.sin()];
         let of_turned = Irradiance::of(|d| sky(turned(d, [turn[0], -turn[1]])));
         let turned_after = Irradiance::of(sky).turned(turn);
-        for (a, b) in of_turned.terms.iter().zip(turned_after.terms) {
+        for (a, b) in of_turned.terms().iter().zip(turned_after.terms()) {
             assert!((*a - b).abs().max_element() < 2e-3, "{a} {b}");
         }
         // A quarter to the left brings what was ahead to the left.
