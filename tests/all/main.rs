@@ -11,6 +11,7 @@ mod contacts;
 mod corpus;
 mod crowds;
 mod determinism;
+mod entry;
 mod exactness;
 mod far_coordinates;
 mod flat_mirrors;

@@ -19,7 +19,7 @@ use raywalk::measure::metric::{METRICS, Score, metric};
 use raywalk::measure::tune::Bound;
 use raywalk::render::FrameStats;
 use raywalk::scene::progress::Step;
-use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene, Start};
+use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene};
 use raywalk::settings::{Kind, PRESETS, ROWS, Settings, Supersample, row};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -30,6 +30,7 @@ fn scene() -> Scene {
         name: "room".to_owned(),
         format: "JSON",
         generation: 1,
+        start: raywalk::scene::Start::AT_CAMERA,
         geometry: Arc::new(Geometry::build(Vec::new())),
         contacts: Arc::default(),
         build_ms: 0.0,
@@ -41,6 +42,8 @@ fn scene() -> Scene {
         headlight: true,
         cameras: vec![named("default"), named("door")],
         render: RenderDefaults::default(),
+        on_foot: false,
+        environment: None,
         auto_exposure: 0.0,
         warnings: Vec::new(),
     }

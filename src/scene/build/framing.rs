@@ -1,6 +1,6 @@
 //! The camera of a scene that gives none: one on foot where there is floor to walk on, else one that frames the subject.
 
-use super::floors::Floors;
+use super::floors::{Floors, Scale};
 use super::level::{self, Stand};
 use super::probe::Probe;
 use super::spawn::{self, Spawn};
@@ -35,7 +35,8 @@ const SHOWN: f64 = 0.02;
 pub fn start(probe: &mut Probe, objects: usize, render: &RenderDefaults, spawn: Option<&Spawn>) -> (Camera, Start) {
     let subject = Subject::of(&SurfaceSamples::of(probe.geometry(), objects));
     let floors = Floors::of(probe, subject.bounds);
-    let unit = floors.as_ref().map_or(Unit::Metre, |floors| floors.unit(probe, subject.bounds));
+    let scale = floors.as_ref().map_or(Scale::UNKNOWN, |floors| floors.scale(probe, subject.bounds));
+    let unit = scale.unit;
     if let Some(spawn) = spawn
         && let Some((camera, eye_height)) = spawn::enter(probe, spawn, subject.bounds, unit)
     {
@@ -45,13 +46,11 @@ pub fn start(probe: &mut Probe, objects: usize, render: &RenderDefaults, spawn: 
     // What is smaller than a person cannot tell how large floors must be.
     let is_small = subject.bounds.size().y < SMALL * unit.per_metre();
     let is_walkable = is_small || regions.first().is_some_and(|region| region.area >= CLOSET);
-    let on_foot = |entry, Stand { camera, eye_height }| {
-        (camera, Start { entry, eye_height: Some(eye_height), unit })
-    };
+    let on_foot = |entry, Stand { camera, eye_height }| (camera, Start { entry, eye_height: Some(eye_height), unit });
     if is_walkable && let Some(stand) = interior::stand(probe, subject.bounds, unit) {
         return on_foot(Entry::Interior, stand);
     }
-    if let Some(stand) = level::stand(probe, &regions, subject.bounds, unit) {
+    if let Some(stand) = level::stand(probe, &regions, subject.bounds, scale) {
         return on_foot(Entry::Level, stand);
     }
     (outside(probe, &subject, render), Start { entry: Entry::Framed, eye_height: None, unit: Unit::Metre })
@@ -103,12 +102,7 @@ fn frame(subject: &Subject, render: &RenderDefaults, from_behind: bool) -> Camer
     // Far from the origin the eye must stay a few roundings away from what it looks at.
     let distance = across.distance().max(above.distance()).max(center.abs().max_element() * 1e-5).max(1e-30);
     let target = center + right * across.middle() + up * above.middle();
-    let camera = Camera {
-        eye: (target + from * distance).as_vec3(),
-        look_at: target.as_vec3(),
-        fov: FOV,
-        ..defaults
-    };
+    let camera = Camera { eye: (target + from * distance).as_vec3(), look_at: target.as_vec3(), fov: FOV, ..defaults };
     if camera.is_valid() { camera } else { defaults }
 }
 

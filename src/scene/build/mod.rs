@@ -359,11 +359,12 @@ impl SceneBuilder {
         let mut probe = Probe::within(&geometry, Allowance::new(STEPS_AROUND, &wanted));
         let mut start = Start::AT_CAMERA;
         if self.cameras.is_empty() {
-            let spawn = self.spawn.take();
+            let spawn = self.spawn.take().or_else(|| self.marked_spawn());
             let (camera, found) = framing::start(&mut probe, self.objects.len(), &self.render, spawn.as_ref());
             start = found;
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
         }
+        let on_foot = start.eye_height.is_some();
         let auto_exposure = self.expose(&mut probe);
         Some(Scene {
             name: self.name,
@@ -379,13 +380,22 @@ impl SceneBuilder {
             lights: self.lights,
             headlight,
             cameras: self.cameras,
-            on_foot: start.eye_height.is_some(),
+            on_foot,
             start,
             environment: None,
             render: self.render,
             auto_exposure,
             warnings: self.warnings,
         })
+    }
+
+    /// The middle of the first object that is named as a spawn point, in a format that has no other way to mark one.
+    fn marked_spawn(&self) -> Option<Spawn> {
+        let is_marked =
+            |object: &&Object| object.name.as_deref().is_some_and(is_spawn_name) && object.bounds.is_finite();
+        let marked = self.objects.iter().find(is_marked).filter(|_| self.format == "OBJ")?;
+        let name = shortened(marked.name.as_deref().unwrap_or_default());
+        Some(Spawn { name, position: marked.bounds.center(), forward: None })
     }
 
     /// The stops that show white at half of full brightness where the scene is as bright as usual.

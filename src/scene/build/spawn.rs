@@ -46,9 +46,8 @@ pub fn enter(probe: &mut Probe, spawn: &Spawn, bounds: Aabb, unit: Unit) -> Opti
     };
     let mut found = camera(view);
     // In the middle of nothing one sees at least what one stands on.
-    let sees = |probe: &mut Probe, camera: &Camera| {
-        probe.see(eye, &brightness::view(camera), 0.0).iter().any(Option::is_some)
-    };
+    let sees =
+        |probe: &mut Probe, camera: &Camera| probe.see(eye, &brightness::view(camera), 0.0).iter().any(Option::is_some);
     if found.is_valid() && !sees(probe, &found) {
         let down = camera((view + Vec3::Y * DOWN).normalize());
         found = if sees(probe, &down) { down } else { found };
@@ -90,8 +89,10 @@ pub fn is_spawn_name(name: &str) -> bool {
             words.last_mut().into_iter().for_each(|word| word.extend(lower.clone()));
         }
     }
-    const OTHERS: &[&str] =
-        &["ammo", "ball", "boss", "bot", "car", "enemies", "enemy", "item", "items", "mob", "monster", "npc", "pickup", "vehicle", "weapon", "zombie"];
+    const OTHERS: &[&str] = &[
+        "ammo", "ball", "boss", "bot", "car", "enemies", "enemy", "item", "items", "mob", "monster", "npc", "pickup",
+        "vehicle", "weapon", "zombie",
+    ];
     let is = |word: &String, names: &[&str]| names.contains(&word.as_str());
     let starts = words.windows(2).any(|pair| is(&pair[0], &["player"]) && is(&pair[1], &["start"]));
     let spawns = words.iter().any(|word| is(word, &["spawn", "spawnpoint", "playerspawn", "playerstart"]));
@@ -105,12 +106,35 @@ mod tests {
     #[test]
     fn spawn_points_are_known_by_their_names() {
         for name in [
-            "spawn", "Spawn", "SPAWN", "PlayerStart", "player_start", "PLAYERSTART", "red-spawn", "spawn_point", "SpawnPoint.001",
-            "player_spawn", "PlayerSpawn2", "spawnpoint", "Blue Spawn", "spawn-3",
+            "spawn",
+            "Spawn",
+            "SPAWN",
+            "PlayerStart",
+            "player_start",
+            "PLAYERSTART",
+            "red-spawn",
+            "spawn_point",
+            "SpawnPoint.001",
+            "player_spawn",
+            "PlayerSpawn2",
+            "spawnpoint",
+            "Blue Spawn",
+            "spawn-3",
         ] {
             assert!(is_spawn_name(name), "{name}");
         }
-        for name in ["", "spawner", "respawned", "enemy_spawn", "ItemSpawn", "Start", "player", "PlayerRestart", "spawning", "spa wn"] {
+        for name in [
+            "",
+            "spawner",
+            "respawned",
+            "enemy_spawn",
+            "ItemSpawn",
+            "Start",
+            "player",
+            "PlayerRestart",
+            "spawning",
+            "spa wn",
+        ] {
             assert!(!is_spawn_name(name), "{name}");
         }
     }
