@@ -142,6 +142,11 @@ impl Scene {
         build::finite_bounds(&self.objects)
     }
 
+    /// Whether the first camera is that of somebody who stands on a floor: a walk starts on foot.
+    pub fn on_foot(&self) -> bool {
+        self.start.eye_height.is_some()
+    }
+
     /// The same place in the light of `lights`, exposed as before: they may be none, and then there is none at the eye
     /// either.
     pub fn with_lights(&self, lights: Vec<Light>) -> Self {

@@ -428,6 +428,21 @@ fn info_describes_the_scene() {
         assert!(text.contains(word), "{word}: {text}");
     }
     assert!(!bench.done("info").is_empty(), "the built-in scene");
+    assert_eq!((&info["start"], &info["eye_height"]), (&"the file's camera".into(), &Value::Null));
+    // Floor, ceiling and four walls of a room in centimetres.
+    let walls = [[-300, -10, -300, 300, 0, 300], [-300, 280, -300, 300, 290, 300], [-300, 0, -310, 300, 280, -300]];
+    let others = [[-300, 0, 300, 300, 280, 310], [-310, 0, -300, -300, 280, 300], [300, 0, -300, 310, 280, 300]];
+    let wall = |[a, b, c, d, e, f]: [i32; 6]| {
+        format!(r#"{{ "type": "box", "min": [{a}, {b}, {c}], "max": [{d}, {e}, {f}] }}"#)
+    };
+    let objects = walls.into_iter().chain(others).map(wall).collect::<Vec<_>>().join(", ");
+    bench.write("room.json", format!(r#"{{ "version": 1, "objects": [{objects}] }}"#));
+    let text = bench.done("info room.json");
+    for line in ["start       on foot, 1.6 m above the floor (interior)", "unit        centimetres"] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    let info = bench.json("info room.json --json");
+    assert_eq!((&info["unit"], info["eye_height"].as_f64().map(f64::round)), (&"centimetres".into(), Some(160.0)));
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod contacts;
 mod corpus;
 mod crowds;
 mod determinism;
+mod entry;
 mod environment;
 mod exactness;
 mod far_coordinates;

@@ -21,7 +21,7 @@ use raywalk::math::simd;
 use raywalk::measure::tune::Bound;
 use raywalk::render::FrameStats;
 use raywalk::scene::progress::Step;
-use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene, Start};
+use raywalk::scene::{Camera, Material, NamedCamera, RenderDefaults, Scene};
 use raywalk::settings::{Kind, PRESETS, ROWS, Settings, Supersample, row};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -32,6 +32,7 @@ fn scene() -> Scene {
         name: "room".to_owned(),
         format: "JSON",
         generation: 1,
+        start: raywalk::scene::Start::AT_CAMERA,
         geometry: Arc::new(Geometry::build(Vec::new())),
         contacts: Arc::default(),
         build_ms: 0.0,
@@ -45,6 +46,7 @@ fn scene() -> Scene {
         environment: None,
         start: Start::AT_CAMERA,
         render: RenderDefaults::default(),
+        environment: None,
         auto_exposure: 0.0,
         warnings: Vec::new(),
     }

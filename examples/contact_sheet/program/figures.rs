@@ -79,7 +79,7 @@ impl Figures {
         }
         let mean = sum / f64::max(count, 1.0);
         let camera = &scene.cameras[0].camera;
-        let stands = scene.start.eye_height.is_some();
+        let stands = scene.on_foot();
         let floor = stands.then(|| scene.pick(camera.eye, -camera.up.normalize_or(glam::Vec3::Y), 0.0));
         let mut figures = Self {
             ok: false,

@@ -123,7 +123,7 @@ impl Walker {
         let mut walker = Self::new(home, surroundings);
         let world = World { geometry: &scene.geometry, up: walker.up() };
         walker.take_eye_height(usual_eye_height(surroundings, world.distance(walker.pose.eye, -world.up)));
-        if scene.start.eye_height.is_some() && scene.cameras.first().is_some_and(|first| first.camera == home) {
+        if scene.on_foot() && scene.cameras.first().is_some_and(|first| first.camera == home) {
             walker.way = Way::Walk(None);
         }
         walker

@@ -2,7 +2,7 @@
 
 use super::interior::{VIEWS, horizontal};
 use super::probe::Probe;
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, NO_PRIMITIVE};
 use crate::scene::start::Unit;
 use glam::Vec3;
 
@@ -21,8 +21,12 @@ const HEIGHT: f32 = 1.7;
 const BELOW: f32 = 0.1;
 
 /// Least share of columns with a roof whose heights tell the unit.
-const ROOFED: f32 = 0.25;
-/// Widest streets and greatest heights, in metres, that are usual: what is larger both ways is in centimetres.
+const ROOFED: f32 = 0.1;
+/// Usual heights of rooms lie below the first, in metres, and none above the second.
+const HIGH: f32 = 12.0;
+const HIGHEST: f32 = 30.0;
+/// Usual widths of streets lie below the first, in metres; what is wider and higher than the second is in centimetres.
+const WIDE: f32 = 60.0;
 const WIDEST: f32 = 100.0;
 /// Height above the floor at which walls are looked for, as a share of the extent, and places where they are.
 const KNEE: f32 = 0.02;
@@ -43,6 +47,22 @@ pub struct Floor {
     pub column: usize,
 }
 
+/// What the sizes of rooms and streets tell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// The unit that they seem to be in.
+    pub unit: Unit,
+    /// Whether there are rooms or streets of usual sizes in that unit.
+    pub is_certain: bool,
+    /// Least area of the floor of a level, in square metres. In units that are but guessed, shelves would be halls.
+    pub least_area: f32,
+}
+
+impl Scale {
+    /// Where nothing tells.
+    pub const UNKNOWN: Self = Self { unit: Unit::Metre, is_certain: false, least_area: 10.0 };
+}
+
 /// The floors in a grid of columns.
 #[derive(Debug)]
 pub struct Floors {
@@ -59,7 +79,7 @@ impl Floors {
     /// takes more than the probe may.
     pub fn of(probe: &mut Probe, bounds: Aabb) -> Option<Self> {
         let size = bounds.size();
-        if bounds.is_empty() || !bounds.is_finite() || size.x * size.z < FOOTPRINT || size.y < HEIGHT {
+        if bounds.is_empty() || !size.is_finite() || size.x * size.z < FOOTPRINT || size.y < HEIGHT {
             return None;
         }
         let cell = size.x.max(size.z) / COLUMNS;
@@ -71,43 +91,54 @@ impl Floors {
             let share = |place: usize, count: usize| (place as f32 + 0.5) / count as f32;
             let [x, z] = [share(column % columns[0], columns[0]), share(column / columns[0], columns[1])];
             let above = Vec3::new(bounds.min.x + size.x * x, top, bounds.min.z + size.z * z);
-            let (mut start, mut room) = (0.0, f32::INFINITY);
+            let (mut start, mut room, mut is_inside) = (0.0, f32::INFINITY, false);
             for _ in 0..LAYERS {
-                let Some(met) = probe.look_along(above, Vec3::NEG_Y, start) else { break };
-                if above.y - met.distance < bottom {
+                let (distance, primitive) = probe.closest(above, Vec3::NEG_Y, start);
+                let at = above - Vec3::Y * distance;
+                if primitive == NO_PRIMITIVE || at.y < bottom {
                     break;
                 }
                 if start > 0.0 {
-                    room = met.distance - (start - step);
+                    room = distance - (start - step);
                 }
-                if met.normal.y >= LEVEL {
-                    let is_even = met.normal.y >= EVEN;
-                    floors.push(Floor { at: above - Vec3::Y * met.distance, room, is_even, column });
+                let up = probe.normal_at(primitive, at).map_or(0.0, |normal| normal.y);
+                // What lies right below the top of something is inside of it: a solid thing has no rooms.
+                if up >= LEVEL && !is_inside {
+                    floors.push(Floor { at, room, is_even: up >= EVEN, column });
                 }
-                start = met.distance + step;
+                is_inside = up > 0.0;
+                start = distance + step;
             }
         }
         (!probe.is_spent()).then_some(Self { columns, cell, floors })
     }
 
     /// The unit that rooms and streets seem to be measured in: metres unless the sizes say otherwise clearly.
-    pub fn unit(&self, probe: &mut Probe, bounds: Aabb) -> Unit {
+    pub fn scale(&self, probe: &mut Probe, bounds: Aabb) -> Scale {
         let mut rooms: Vec<f32> = Vec::new();
-        let mut columns = 0;
+        let mut columns = 0_u32;
         // The highest room of each column: what lies under tables is none.
         for column in self.floors.chunk_by(|a, b| a.column == b.column) {
             columns += 1;
             rooms.extend(column.iter().map(|floor| floor.room).filter(|room| room.is_finite()).max_by(f32::total_cmp));
         }
-        let roofed = rooms.len() as f32 / (columns as f32).max(1.0);
-        if std::env::var_os("DBG").is_some() {
-            eprintln!("roofed {roofed} room {:?} width {:?}", median(&mut rooms), self.street_width(probe, bounds));
+        let is_roofed = rooms.len() as f32 > ROOFED * columns as f32;
+        let room = median(&mut rooms).filter(|_| is_roofed);
+        // Rooms are 4 to 15 m high in eighths, 1.2 to 18 m in centimetres, and 1.8 m or more in millimetres.
+        match room {
+            Some(HIGHEST..120.0) => return Scale { unit: Unit::Eighth, is_certain: true, least_area: 500.0 },
+            Some(120.0..1800.0) => return Scale { unit: Unit::Centimetre, is_certain: true, least_area: 40.0 },
+            Some(1800.0..) => return Scale { unit: Unit::Millimetre, is_certain: true, least_area: 40.0 },
+            Some(..HIGH) => return Scale { is_certain: true, ..Scale::UNKNOWN },
+            _ => {}
         }
-        if roofed >= ROOFED {
-            return median(&mut rooms).map_or(Unit::Metre, of_room);
+        match self.street_width(probe, bounds) {
+            Some(..WIDE) => Scale { is_certain: true, ..Scale::UNKNOWN },
+            Some(WIDEST..) if room.is_none() && bounds.size().y > WIDEST => {
+                Scale { unit: Unit::Centimetre, is_certain: true, least_area: 300.0 }
+            }
+            _ => Scale::UNKNOWN,
         }
-        let is_wide = self.street_width(probe, bounds).is_some_and(|width| width > WIDEST);
-        if is_wide && bounds.size().y > WIDEST { Unit::Centimetre } else { Unit::Metre }
     }
 
     /// The usual distance between walls; `None` where there are few.
@@ -124,16 +155,6 @@ impl Floors {
             widths.extend(across.min_by(f32::total_cmp));
         }
         if widths.len() * 2 < looked.len() { None } else { median(&mut widths) }
-    }
-}
-
-/// The unit in which a room of this height is one for people: from 2 m up to a hall of 30.
-fn of_room(height: f32) -> Unit {
-    match height {
-        ..30.0 => Unit::Metre,
-        30.0..120.0 => Unit::Eighth,
-        120.0..1800.0 => Unit::Centimetre,
-        _ => Unit::Millimetre,
     }
 }
 

@@ -1,6 +1,6 @@
 //! The camera of a scene that gives none: one on foot where there is floor to walk on, else one that frames the subject.
 
-use super::floors::Floors;
+use super::floors::{Floors, Scale};
 use super::level::{self, Stand};
 use super::probe::Probe;
 use super::spawn::{self, Spawn};
@@ -41,7 +41,8 @@ pub fn start(
 ) -> (Camera, Start, Aabb) {
     let subject = Subject::of(&SurfaceSamples::of(probe.geometry(), objects));
     let floors = Floors::of(probe, subject.bounds);
-    let unit = floors.as_ref().map_or(Unit::Metre, |floors| floors.unit(probe, subject.bounds));
+    let scale = floors.as_ref().map_or(Scale::UNKNOWN, |floors| floors.scale(probe, subject.bounds));
+    let unit = scale.unit;
     if let Some(spawn) = spawn
         && let Some((camera, eye_height)) = spawn::enter(probe, spawn, subject.bounds, unit)
     {
@@ -57,7 +58,7 @@ pub fn start(
     if is_walkable && let Some(stand) = interior::stand(probe, subject.bounds, unit) {
         return on_foot(Entry::Interior, stand);
     }
-    if let Some(stand) = level::stand(probe, &regions, subject.bounds, unit) {
+    if let Some(stand) = level::stand(probe, &regions, subject.bounds, scale) {
         return on_foot(Entry::Level, stand);
     }
     let framed = Start { entry: Entry::Framed, eye_height: None, unit: Unit::Metre };

@@ -1,7 +1,7 @@
 //! A place to stand in a level: on connected floor that things rise around, with the longest view.
 
 use super::brightness;
-use super::floors::{Floor, Floors};
+use super::floors::{Floor, Floors, Scale};
 use super::interior::{VIEWS, horizontal};
 use super::probe::{Met, Probe};
 use crate::geometry::Aabb;
@@ -16,12 +16,13 @@ const HEAD_ROOM: f32 = 2.0;
 /// What is passed at this height is passable, and steps up to this height are climbed, in metres; so are slopes of 45°.
 const WAIST: f32 = 1.0;
 const STEP: f32 = 0.5;
-/// Least area of a floor, in square metres,
+/// Least area of a floor in square metres, if it is so large a share of all floors: a shelf has many compartments. Of any
+/// floor, least area.
 const AREA: f32 = 10.0;
-/// of a floor that is one of many, and least share of all floors of one that is smaller: a
-/// shelf has many compartments.
-const SPACIOUS: f32 = 25.0;
 const MOST_OF_ALL: f32 = 0.4;
+const SPACIOUS: f32 = 25.0;
+/// Greatest extent, in metres, of a level without rooms or streets of usual sizes.
+const UNCERTAIN: f32 = 60.0;
 /// Least share of a floor that is even: backs of animals are not.
 const EVEN: f32 = 0.5;
 /// Least share of the largest floor's area: what is smaller is a corner of a large thing.
@@ -30,10 +31,12 @@ const LARGE: f32 = 0.25;
 const STEEP: f32 = 0.6;
 /// Most connected floors that are looked at, and places on each.
 const REGIONS: usize = 4;
-const PLACES: usize = 96;
+const PLACES: usize = 72;
 /// Least mean share of horizontal directions in which something rises above the eye: nothing rises around a table top, and
 /// little around a thing on its ground.
 const SURROUNDED: f32 = 0.3;
+/// The same of pairs of opposite directions: one is between walls in a level, and beside a house that stands alone.
+const BETWEEN: f32 = 0.12;
 /// How many horizontal directions to either side of a view are in the picture.
 const SIDES: usize = 4;
 /// Least distances from the eye to what it looks at and to what is beside it, in metres.
@@ -69,8 +72,12 @@ struct Place {
 
 /// A place to stand on connected floors within `bounds`, or `None` where they are no level, or finding out takes more than
 /// the probe may. `regions` come from [`regions`].
-pub fn stand(probe: &mut Probe, regions: &[Region], bounds: Aabb, unit: Unit) -> Option<Stand> {
-    let metre = unit.per_metre();
+pub fn stand(probe: &mut Probe, regions: &[Region], bounds: Aabb, scale: Scale) -> Option<Stand> {
+    let metre = scale.unit.per_metre();
+    // Tops of things in centimetres would be plateaus in metres.
+    if !scale.is_certain && bounds.size().with_y(0.0).max_element() > UNCERTAIN * metre {
+        return None;
+    }
     let all: f32 = regions.iter().map(|region| region.area).sum();
     let largest = regions.first()?.area;
     let look = Looking { bounds, metre, views: horizontal() };
@@ -78,23 +85,21 @@ pub fn stand(probe: &mut Probe, regions: &[Region], bounds: Aabb, unit: Unit) ->
     for Region { floors, area } in regions.iter().take(REGIONS) {
         let even = floors.iter().filter(|floor| floor.is_even).count() as f32 / floors.len() as f32;
         let is_spacious = *area >= SPACIOUS || (*area >= AREA && *area >= MOST_OF_ALL * all);
-        if !is_spacious || even < EVEN || *area < LARGE * largest {
+        if !is_spacious || *area < scale.least_area || even < EVEN || *area < LARGE * largest {
             continue;
         }
-        let mut risen = 0.0;
+        let (mut risen, mut between) = (0.0, 0.0);
         let mut places = Vec::new();
         let looked = floors.iter().step_by(floors.len().div_ceil(PLACES).max(1));
         let count = looked.len() as f32;
         for floor in looked {
-            let (share, place) = look.around(probe, floor.at + Vec3::Y * EYE_HEIGHT * metre);
-            risen += share / count;
+            let (walls, pairs, place) = look.around(probe, floor.at + Vec3::Y * EYE_HEIGHT * metre);
+            risen += walls / count;
+            between += pairs / count;
             places.extend(place);
         }
-        if std::env::var_os("DBG").is_some() {
-            eprintln!("region {area} m2 of {all}, even {even}, risen {risen}, places {}", places.len());
-        }
         let worth = risen * area;
-        if risen >= SURROUNDED && best.as_ref().is_none_or(|(best, _)| worth > *best) {
+        if risen >= SURROUNDED && between >= BETWEEN && best.as_ref().is_none_or(|(best, _)| worth > *best) {
             best = Some((worth, places));
         }
     }
@@ -195,19 +200,21 @@ struct Looking {
 }
 
 impl Looking {
-    /// The share of horizontal directions in which walls are seen, and the best view from `eye`, if one is any good.
-    fn around(&self, probe: &mut Probe, eye: Vec3) -> (f32, Option<Place>) {
+    /// The share of horizontal directions in which walls are seen, that of pairs of opposite ones, and the best view from
+    /// `eye`, if one is any good.
+    fn around(&self, probe: &mut Probe, eye: Vec3) -> (f32, f32, Option<Place>) {
         let met = probe.see(eye, &self.views, 0.0);
         // What is beyond the bounds is sky: a dome, or something far off.
         let ends: Vec<f32> = self.views.iter().map(|view| self.end(eye, *view)).collect();
         let free: Vec<Option<f32>> =
             met.iter().zip(&ends).map(|(met, end)| met.map(|met| met.distance).filter(|free| free <= end)).collect();
         let is_wall = |met: &Option<Met>| met.is_some_and(|met| met.normal.y.abs() < STEEP);
-        let walls = met.iter().zip(&free).filter(|(met, free)| is_wall(met) && free.is_some());
-        let share = walls.count() as f32 / VIEWS as f32;
+        let walls: Vec<bool> = met.iter().zip(&free).map(|(met, free)| is_wall(met) && free.is_some()).collect();
+        let share = walls.iter().filter(|is_wall| **is_wall).count() as f32 / VIEWS as f32;
+        let pairs = (0..VIEWS / 2).filter(|i| walls[*i] && walls[i + VIEWS / 2]).count() as f32 / (VIEWS / 2) as f32;
         let nearest = free.iter().flatten().copied().fold(f32::INFINITY, f32::min);
         if nearest < BESIDE * self.metre {
-            return (share, None);
+            return (share, pairs, None);
         }
         let far = |i: usize| (free[i].unwrap_or(ends[i]) / self.metre).max(0.1);
         let picture = |middle: usize| (0..=2 * SIDES).map(move |side| (middle + VIEWS + side - SIDES) % VIEWS);
@@ -215,7 +222,9 @@ impl Looking {
             let count = (2 * SIDES + 1) as f32;
             let mean = picture(middle).map(|i| libm::logf(far(i))).sum::<f32>() / count;
             let full = picture(middle).filter(|i| free[*i].is_some()).count() as f32 / count;
-            mean + libm::logf(far(middle)) / 2.0 + FULL * full
+            // Nothing near stands in the middle of the picture.
+            let ahead = picture(middle).skip(SIDES - 1).take(3).map(far).fold(f32::INFINITY, f32::min);
+            mean + libm::logf(ahead) / 2.0 + FULL * full
         };
         let ahead = (0..VIEWS).filter(|&i| far(i) >= AHEAD && picture(i).any(|i| free[i].is_some()));
         let best = ahead.map(|i| (i, score(i))).max_by(|a, b| a.1.total_cmp(&b.1));
@@ -225,7 +234,7 @@ impl Looking {
             let free = free[i].unwrap_or(ends[i]).max(self.metre);
             Place { eye, view: self.views[i], free, score: score - CENTRAL * off / half }
         });
-        (share, place)
+        (share, pairs, place)
     }
 
     /// How far it is to the end of the bounds, a little widened.

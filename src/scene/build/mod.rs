@@ -368,7 +368,7 @@ impl SceneBuilder {
         let mut probe = Probe::within(&geometry, Allowance::new(STEPS_AROUND, &wanted));
         let (mut start, mut subject) = (Start::AT_CAMERA, Aabb::EMPTY);
         if self.cameras.is_empty() {
-            let spawn = self.spawn.take();
+            let spawn = self.spawn.take().or_else(|| self.marked_spawn());
             let (camera, found, bounds) = framing::start(&mut probe, self.objects.len(), &self.render, spawn.as_ref());
             (start, subject) = (found, bounds);
             self.cameras.push(NamedCamera { name: "default".to_owned(), camera });
@@ -422,6 +422,15 @@ impl SceneBuilder {
             auto_exposure: stops,
             warnings: self.warnings,
         })
+    }
+
+    /// The middle of the first object that is named as a spawn point, in a format that has no other way to mark one.
+    fn marked_spawn(&self) -> Option<Spawn> {
+        let is_marked =
+            |object: &&Object| object.name.as_deref().is_some_and(is_spawn_name) && object.bounds.is_finite();
+        let marked = self.objects.iter().find(is_marked).filter(|_| self.format == "OBJ")?;
+        let name = shortened(marked.name.as_deref().unwrap_or_default());
+        Some(Spawn { name, position: marked.bounds.center(), forward: None })
     }
 }
 

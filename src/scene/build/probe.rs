@@ -76,6 +76,11 @@ impl<'a> Probe<'a> {
         hits.iter().zip(directions).map(met).collect()
     }
 
+    /// Unit geometric normal of a primitive at a point on it, on its outer side.
+    pub fn normal_at(&self, primitive: PrimitiveIndex, point: Vec3) -> Option<Vec3> {
+        self.normal(primitive).or_else(|| self.geometry.normal_at(primitive, point))
+    }
+
     /// What one ray meets.
     pub fn look_along(&mut self, origin: Vec3, direction: Vec3, t_min: f32) -> Option<Met> {
         self.look(origin, &[direction], t_min)[0]

@@ -15,6 +15,8 @@ const MOST_HELPERS: usize = 3;
 const DOME_HEIGHT: f32 = 1.2;
 /// Greatest thickness of a flat thing, as a share of its extent.
 const FLAT: f32 = 0.02;
+/// Least share of its outline that a ground covers: many labels on a board are none.
+const COVERED: f64 = 0.7;
 /// How deep what stands on a ground may reach below it, as a share of its own height: wheels, roots, foundations.
 const SUNK: f32 = 0.35;
 /// How far the surface of a dome stays from the middle of what is in it, in radii of that, and how much of it must.
@@ -99,7 +101,11 @@ fn is_helper(large: &Group, small: Aabb, samples: &SurfaceSamples) -> bool {
         let sunk = SUNK * small.size()[thin];
         let is_beside =
             large.bounds.max[thin] <= small.min[thin] + sunk || large.bounds.min[thin] >= small.max[thin] - sunk;
-        return is_beside && is_near(large.bounds, small);
+        let outline = f64::from(size[(thin + 1) % 3]) * f64::from(size[(thin + 2) % 3]);
+        let area: f64 = large.members.iter().map(|sample| sample.area).sum();
+        // A pole is thin, too.
+        let is_wide = [1, 2].iter().all(|i| size[(thin + i) % 3] >= small.size()[(thin + i) % 3]);
+        return is_beside && is_wide && is_near(large.bounds, small) && area >= COVERED * outline;
     }
     is_dome(large, small, samples)
 }

@@ -2,6 +2,7 @@
 
 use super::file::{CORNERS, File, triangle, try_load, warnings};
 use glam::Vec3;
+use raywalk::scene::start::Entry;
 use raywalk::scene::{LoadOptions, Scene, load};
 
 const PLAIN: &str = r#""materials": [{}]"#;
@@ -186,5 +187,64 @@ fn buffers_lie_in_files_beside_and_nowhere_else() {
     {
         let error = read(uri).unwrap_err().to_string();
         assert!(error.contains("(/buffers/0)"), "{uri}: {error}");
+    }
+}
+
+/// A floor of 40 m with a wall in front and with the given nodes besides.
+fn yard(nodes: &str) -> Scene {
+    let mut file = File::default();
+    let corners = [
+        [-20.0, 0.0, 20.0],
+        [20.0, 0.0, 20.0],
+        [20.0, 0.0, -20.0],
+        [-20.0, 0.0, -20.0],
+        [20.0, 4.0, -20.0],
+        [-20.0, 4.0, -20.0],
+    ];
+    let positions = file.vectors(&corners);
+    let indices = file.indices(&[0, 1, 2, 0, 2, 3, 3, 2, 4, 3, 4, 5]);
+    file.load(&format!(
+        r#""extensionsUsed": ["OMI_spawn_point"], "materials": [{{ "doubleSided": true }}],
+        "meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": {positions} }}, "indices": {indices}, "material": 0 }}] }}],
+        "nodes": [{{ "mesh": 0 }}, {nodes}]"#
+    ))
+}
+
+#[test]
+fn spawn_points_are_known_by_extension_and_by_name() {
+    let named = r#"{ "name": "Player_Spawn", "translation": [3, 0.2, -8], "rotation": [0, 1, 0, 0] }"#;
+    let marked = r#"{ "name": "here", "translation": [-5, 2, 6], "rotation": [0, 0.70710678, 0, 0.70710678],
+        "extensions": { "OMI_spawn_point": { "title": "Gate", "team": "Red" } } }"#;
+    let others = r#"{ "name": "enemy-spawn", "translation": [9, 0, 9] }, { "name": "spawner" }"#;
+    for (nodes, name, eye, forward) in [
+        (format!("{others}, {named}"), "Player_Spawn", Vec3::new(3.0, 1.6, -8.0), Vec3::NEG_Z),
+        (format!("{named}, {others}, {marked}"), "here", Vec3::new(-5.0, 1.6, 6.0), Vec3::X),
+    ] {
+        let scene = yard(&nodes);
+        let camera = scene.cameras[0].camera;
+        assert_eq!(scene.start.entry, Entry::Spawn(name.to_owned()));
+        assert!(scene.on_foot() && camera.eye.abs_diff_eq(eye, 1e-3), "{}", camera.eye);
+        assert!(camera.frame(4, 4).forward.abs_diff_eq(forward, 1e-3), "{}", camera.frame(4, 4).forward);
+        assert!(warnings(&scene).is_empty(), "{:?}", warnings(&scene));
+    }
+    let beside = yard(others);
+    assert!(!matches!(beside.start.entry, Entry::Spawn(_)), "{}", beside.start);
+}
+
+#[test]
+fn a_camera_wins_over_a_spawn_point_and_odd_spawn_points_do_no_harm() {
+    let scene = triangle(&format!(
+        r#"{PLAIN}, "cameras": [{{ "type": "perspective", "perspective": {{ "yfov": 1, "znear": 0.1 }} }}],
+        "nodes": [{{ "mesh": 0 }}, {{ "name": "spawn" }}, {{ "camera": 0, "translation": [0, 0, 5] }}]"#
+    ));
+    assert_eq!((scene.cameras[0].camera.eye.z, &scene.start.entry), (5.0, &Entry::Camera));
+    for keys in [
+        r#""scale": [0, 0, 0], "translation": [0, 3e38, 0]"#,
+        r#""extensions": { "OMI_spawn_point": null }"#,
+        r#""extensions": { "OMI_spawn_point": { "title": 7 } }, "translation": [1e30, 0, 0]"#,
+        r#""rotation": [0.70710678, 0, 0, 0.70710678]"#,
+    ] {
+        let scene = triangle(&format!(r#"{PLAIN}, "nodes": [{{ "mesh": 0 }}, {{ "name": "spawn", {keys} }}]"#));
+        assert!(scene.cameras[0].camera.is_valid(), "{keys}");
     }
 }
