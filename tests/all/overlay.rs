@@ -44,9 +44,7 @@ fn scene() -> Scene {
         headlight: true,
         cameras: vec![named("default"), named("door")],
         environment: None,
-        start: Start::AT_CAMERA,
         render: RenderDefaults::default(),
-        environment: None,
         auto_exposure: 0.0,
         warnings: Vec::new(),
     }
