@@ -31,6 +31,8 @@ const WIDEST: f32 = 100.0;
 /// Height above the floor at which walls are looked for, as a share of the extent, and places where they are.
 const KNEE: f32 = 0.02;
 const PLACES: usize = 64;
+/// One in so many of them must be between walls: the others may be roofs.
+const FEW: usize = 5;
 /// Greatest height of the unit normal of a wall.
 const UPRIGHT: f32 = 0.3;
 
@@ -154,7 +156,7 @@ impl Floors {
             let across = (0..VIEWS / 2).filter_map(|i| Some(wall(i)? + wall(i + VIEWS / 2)?));
             widths.extend(across.min_by(f32::total_cmp));
         }
-        if widths.len() * 2 < looked.len() { None } else { median(&mut widths) }
+        if widths.len() * FEW < looked.len() { None } else { median(&mut widths) }
     }
 }
 
