@@ -247,7 +247,7 @@ impl Plan {
             say(
                 self.sky,
                 "sky: on, it lights surfaces from everywhere by formulas, without a ray and without shadows".to_owned(),
-                "sky: off, the scene has no environment",
+                "sky: off, none surrounds the scene",
             ),
             say(
                 self.emission,

@@ -278,18 +278,14 @@ fn gathered<S: Simd>(simd: S, found: impl Fn(usize) -> [f32; 3]) -> V3<S::f32s> 
     V3::load(simd, &lanes[0][..S::f32s::LEN], &lanes[1][..S::f32s::LEN], &lanes[2][..S::f32s::LEN])
 }
 
-/// The mean of the four texels around a place, by their distance. Left and right edge meet.
+/// The mean of the four texels around a place, by their distance. Left and right edge meet; beyond a pole is its other side.
 fn interpolated(map: SkyMap<'_>, [across, down]: [f32; 2]) -> [f32; 3] {
-    let (x, y) = (across * map.width as f32 - 0.5, (down * map.height as f32 - 0.5).max(0.0));
+    let (x, y) = (across * map.width as f32 - 0.5, down * map.height as f32 - 0.5);
     // What is not a number is 0.
-    let left = x.floor();
-    let (column, row) = (left as i64, y as u32);
-    let wrapped = |column: i64| column.rem_euclid(i64::from(map.width)) as usize;
-    let clamped = |row: u32| row.min(map.height - 1) as usize * map.width as usize;
-    let (right_share, lower_share) = (x - left, y - y.floor());
-    let [above, below] = [clamped(row), clamped(row + 1)];
-    let [left, right] = [wrapped(column), wrapped(column + 1)];
-    let texels = [above + left, above + right, below + left, below + right].map(|place| map.texels[place]);
+    let (column, row) = (x.floor() as i64, y.floor() as i64);
+    let (right_share, lower_share) = (x - x.floor(), y - y.floor());
+    let places = [(column, row), (column + 1, row), (column, row + 1), (column + 1, row + 1)];
+    let texels = places.map(|(column, row)| map.texel(column, row));
     std::array::from_fn(|channel| {
         let [a, b, c, d] = texels.map(|texel| texel[channel]);
         let (upper, lower) = (a + (b - a) * right_share, c + (d - c) * right_share);

@@ -87,7 +87,7 @@ pub struct Gradient {
 
 /// An equirectangular picture: its middle is seen along -Z, its left and right edges along +Z, its top row straight up; what is
 /// right of its middle is seen along +X.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct SkyImage {
     /// Name of its file, for people.
     pub name: String,
@@ -101,6 +101,14 @@ pub struct SkyImage {
     pub texels: Box<[[f32; 3]]>,
     /// What rough and matte surfaces get of it, once somebody asked.
     pub(in crate::scene) blurred: OnceLock<Blurred>,
+}
+
+/// Pictures are equal if they show the same; whether anybody asked for their blurred ones is nothing of theirs.
+impl PartialEq for SkyImage {
+    fn eq(&self, other: &Self) -> bool {
+        let of = |image: &Self| (image.width, image.height, image.source);
+        self.name == other.name && of(self) == of(other) && self.texels == other.texels
+    }
 }
 
 impl SkyImage {

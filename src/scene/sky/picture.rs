@@ -128,6 +128,14 @@ impl SkyMap<'_> {
         rows.iter().fold(Moments::default(), |sum, row| sum.and(row)).irradiance()
     }
 
+    /// A texel, where columns go on around and rows over the poles.
+    pub fn texel(&self, column: i64, row: i64) -> [f32; 3] {
+        let (width, height) = (i64::from(self.width), i64::from(self.height));
+        let (inside, across) =
+            if (0..height).contains(&row) { (row, 0) } else { (row.clamp(0, height - 1), width / 2) };
+        self.texels[(inside * width + (column + across).rem_euclid(width)) as usize]
+    }
+
     /// The radiance in a direction, interpolated between four texels.
     pub fn radiance(&self, direction: DVec3) -> DVec3 {
         let DVec3 { x, y, z } = direction;
@@ -136,11 +144,7 @@ impl SkyMap<'_> {
         let (x, y) = (u * f64::from(self.width) - 0.5, v * f64::from(self.height) - 0.5);
         let (left, above) = (x.floor(), y.floor());
         let (across, down) = (x - left, y - above);
-        let texel = |x: f64, y: f64| {
-            let x = x.rem_euclid(f64::from(self.width)) as usize % self.width as usize;
-            let y = y.clamp(0.0, f64::from(self.height - 1)) as usize;
-            DVec3::from_array(self.texels[y * self.width as usize + x].map(f64::from))
-        };
+        let texel = |x: f64, y: f64| DVec3::from_array(self.texel(x as i64, y as i64).map(f64::from));
         let row = |y: f64| texel(left, y) * (1.0 - across) + texel(left + 1.0, y) * across;
         row(above) * (1.0 - down) + row(above + 1.0) * down
     }
@@ -263,7 +267,7 @@ mod tests {
         }
         assert!(
             (image.blurred().irradiance.over_pi(Vec3::new(0.6, 0.0, 0.8)) - Vec3::splat(0.7)).abs().max_element()
-                < 1e-4
+                < 2e-3
         );
     }
 
@@ -306,7 +310,7 @@ mod tests {
         for level in &image.blurred().levels {
             for direction in [DVec3::X, DVec3::Y, DVec3::new(0.6, -0.48, -0.64)] {
                 let difference = level.map().radiance(direction) - reflected(sky, direction, level.roughness.into());
-                assert!(difference.abs().max_element() < 0.03, "{} {direction}: {difference}", level.roughness);
+                assert!(difference.abs().max_element() < 0.04, "{} {direction}: {difference}", level.roughness);
             }
         }
     }

@@ -6,8 +6,13 @@ use glam::{Vec2, Vec3};
 use raywalk::render::{Film, Planes, Scratch, render_frame};
 use raywalk::scene::material::{Alpha, Model};
 use raywalk::scene::texture::{Texture, Wrap, srgb_to_linear};
-use raywalk::scene::{Camera, LoadOptions, Material, Scene, SceneError, load};
+use raywalk::scene::{Camera, EnvironmentChoice, LoadOptions, Material, Scene, SceneError, load};
 use raywalk::settings::Settings;
+
+/// In the light that the file has, and nothing else.
+fn in_its_own_light() -> LoadOptions {
+    LoadOptions { environment: EnvironmentChoice::None, ..LoadOptions::default() }
+}
 
 fn load_obj(text: impl AsRef<[u8]>) -> Result<Scene, SceneError> {
     load(&Folder::new().write("s.obj", text), &LoadOptions::default())
@@ -31,7 +36,7 @@ fn every_statement_becomes_what_it_says() {
     for name in ["bricks.png", "heights.png", "normals.png"] {
         image::GrayImage::from_pixel(2, 2, image::Luma([128])).save(folder.write(name, "")).unwrap();
     }
-    let scene = load(&folder.write("s.obj", include_str!("every_statement.obj")), &LoadOptions::default()).unwrap();
+    let scene = load(&folder.write("s.obj", include_str!("every_statement.obj")), &in_its_own_light()).unwrap();
     assert_eq!(scene.format, "OBJ");
     // The faces of an object with a material, one object for those with the same attributes.
     let objects: Vec<(Option<&str>, &str)> = scene
@@ -234,7 +239,7 @@ fn before_red(folder: &Folder, library: &str) -> [f32; 3] {
     folder.write("s.mtl", format!("newmtl back\nKd 1 0 0\nnewmtl m\n{library}"));
     let text = "mtllib s.mtl\nv -2 -1 0\nv 2 -1 0\nv 2 1 0\nv -2 1 0\nv -4 -3 -1\nv 4 -3 -1\nv 4 3 -1\nv -4 3 -1\n\
                 vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl back\nf 5 6 7 8\nusemtl m\nf 1/1 2/2 3/3 4/4";
-    let scene = load(&folder.write("s.obj", text), &LoadOptions::default()).unwrap();
+    let scene = load(&folder.write("s.obj", text), &in_its_own_light()).unwrap();
     let off_the_diagonal = Vec3::new(0.25, -0.25, 0.0);
     let eye = off_the_diagonal + Vec3::Z * 4.0;
     let camera = Camera { eye, look_at: off_the_diagonal, ..Camera::default() };
@@ -359,7 +364,7 @@ fn what_an_opacity_map_leaves_out_is_not_there() {
     let obj = folder.write("s.obj", format!("mtllib s.mtl\n{square}"));
     let seen = |library: &str| {
         folder.write("s.mtl", format!("newmtl a\nKd 0 1 0\n{library}"));
-        let scene = load(&obj, &LoadOptions::default()).unwrap();
+        let scene = load(&obj, &in_its_own_light()).unwrap();
         (scene.materials[0].alpha, picture(&scene, 64, 64).iter().filter(|[_, green, _]| *green > 40).count())
     };
     let (alpha, whole) = seen("map_Kd green.png");
@@ -384,7 +389,7 @@ fn a_missing_colour_is_shown_as_grey_squares() {
         ("newmtl a\nmap_Kd s.mtl", "cannot decode image \"s.mtl\""),
     ] {
         folder.write("s.mtl", library);
-        let scene = load(&obj, &LoadOptions::default()).unwrap();
+        let scene = load(&obj, &in_its_own_light()).unwrap();
         let warnings = warnings(&scene);
         assert!(warnings[0].contains(told) && warnings[0].ends_with("a placeholder is shown"), "{warnings:?}");
         let [Texture::Checker { size, .. }] = scene.textures[..] else { panic!("squares") };

@@ -3,7 +3,7 @@
 use crate::temporary::Folder;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-use raywalk::scene::{LoadOptions, Scene, SceneError, load};
+use raywalk::scene::{EnvironmentChoice, LoadOptions, Scene, SceneError, load};
 
 /// The buffer of a file and the accessors over it.
 #[derive(Default)]
@@ -92,10 +92,15 @@ impl File {
     }
 }
 
-/// Loads a glTF text in a folder of its own.
+/// In the light that the file has, and nothing else.
+pub fn in_its_own_light() -> LoadOptions {
+    LoadOptions { environment: EnvironmentChoice::None, ..LoadOptions::default() }
+}
+
+/// Loads a glTF text in a folder of its own, in the light that it has.
 pub fn try_load(text: impl AsRef<[u8]>) -> Result<Scene, SceneError> {
     let folder = Folder::new();
-    load(&folder.write("s.gltf", text), &LoadOptions::default())
+    load(&folder.write("s.gltf", text), &in_its_own_light())
 }
 
 /// A scene of one triangle with the given keys besides its mesh.

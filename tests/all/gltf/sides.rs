@@ -1,6 +1,6 @@
 //! Surfaces that are seen from their front only: `doubleSided` false.
 
-use super::file::{File, triangle};
+use super::file::{File, in_its_own_light, triangle};
 use crate::exactness::wrong_pixels;
 use crate::instancing::differences;
 use crate::picture_bits::render;
@@ -8,7 +8,7 @@ use crate::random::Random;
 use crate::stress;
 use crate::temporary::Folder;
 use glam::Vec3;
-use raywalk::scene::{Camera, LoadOptions, Scene, load};
+use raywalk::scene::{Camera, Scene, load};
 use raywalk::settings::Settings;
 use std::f32::consts::TAU;
 
@@ -155,7 +155,7 @@ fn plain_shapes() -> Shapes {
 
 fn loaded(text: &str) -> Scene {
     let folder = Folder::new();
-    let scene = load(&folder.write("s.gltf", text), &LoadOptions::default());
+    let scene = load(&folder.write("s.gltf", text), &in_its_own_light());
     scene.unwrap_or_else(|error| panic!("{error}"))
 }
 

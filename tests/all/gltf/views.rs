@@ -1,11 +1,13 @@
 //! Lights, cameras and exposure: what the first picture shows.
 
 use super::file::{CORNERS, File, triangle, warnings};
+use crate::temporary::Folder;
 use glam::Vec3;
 use raywalk::render::{Film, Planes, Scratch, render_frame};
-use raywalk::scene::Scene;
 use raywalk::scene::light::{Falloff, LightKind};
+use raywalk::scene::{Environment, EnvironmentChoice, LoadOptions, Scene, Sky, load};
 use raywalk::settings::{Exposure, Settings, ToneMap};
+use std::path::Path;
 
 /// A white wall of two triangles in the plane z = 0, 10 wide and high, with the given keys besides.
 fn wall(material: &str, rest: &str) -> Scene {
@@ -186,4 +188,42 @@ fn vertex_colours_reach_the_picture() {
     render_frame(&scene, &scene.cameras[0].camera, &Settings::exact(), &mut Scratch::new(), &mut film);
     let seen: Vec<_> = film.rgba().chunks_exact(4).filter(|p| p[0] > 0).collect();
     assert!(seen.len() > 50 && seen.iter().all(|p| p[0] > 100 && p[1] < 40 && p[1] == p[2]), "{:?}", seen.first());
+}
+
+#[test]
+fn a_file_that_says_nothing_of_light_is_lit_by_a_studio_and_a_key_light() {
+    let folder = Folder::new();
+    let mut file = File::default();
+    let positions = file.vectors(&CORNERS);
+    let text = |rest: &str| {
+        file.text(&format!(
+            r#""meshes": [{{ "primitives": [{{ "material": 0, "attributes": {{ "POSITION": {positions} }} }}] }}],
+            "materials": [{MATTE}], {rest}"#
+        ))
+    };
+    let alone = folder.write("alone.gltf", text(r#""nodes": [{ "mesh": 0 }]"#));
+    let sun = r#""extensions": { "KHR_lights_punctual": { "lights": [{ "type": "directional", "intensity": 10 }] } },
+        "nodes": [{ "mesh": 0 }, { "extensions": { "KHR_lights_punctual": { "light": 0 } } }]"#;
+    let lit = folder.write("lit.gltf", text(sun));
+    let load_as = |path: &Path, environment| {
+        load(path, &LoadOptions { environment, ..LoadOptions::default() }).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let intensity = |scene: &Scene| match &scene.environment {
+        Some(Environment { sky: Sky::Studio, intensity, .. }) => *intensity,
+        other => panic!("{other:?}"),
+    };
+    let [alone, lit_too] = [&alone, &lit].map(|path| load_as(path, EnvironmentChoice::Scene));
+    assert!(!alone.headlight && alone.lights.len() == 1 && alone.render.ambient == Vec3::ZERO);
+    assert!(intensity(&alone) > 0.1);
+    // Beside lights it fills shadows with a tenth of what they give, as ambient light did.
+    assert!(lit_too.lights.len() == 1 && intensity(&lit_too) > 0.1 && lit_too.render.ambient == Vec3::ZERO);
+    // Nothing that is seen is black, behind things neither.
+    for scene in [&alone, &lit_too] {
+        let mut film = Film::new(33, 33, Planes::default());
+        render_frame(scene, &scene.cameras[0].camera, &Settings::exact(), &mut Scratch::new(), &mut film);
+        let dark = film.rgba().chunks_exact(4).filter(|pixel| pixel[..3].iter().all(|channel| *channel < 5)).count();
+        assert_eq!(dark, 0);
+    }
+    let bare = load_as(&lit, EnvironmentChoice::None);
+    assert!(bare.environment.is_none() && bare.render.ambient != Vec3::ZERO);
 }
