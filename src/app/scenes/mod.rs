@@ -112,7 +112,7 @@ enum Note {
     LoadEnded,
     Saw(Sight),
     Answered(Answer),
-    Sky(SkyNote),
+    Sky(Box<SkyNote>),
     SkyChanged,
 }
 
@@ -429,7 +429,7 @@ impl Scenes {
                     }
                 }
                 Note::Sky(note) => {
-                    if let Some(outcome) = self.sky.ended(note, &self.inbox) {
+                    if let Some(outcome) = self.sky.ended(*note, &self.inbox) {
                         return Some(News::Sky(outcome));
                     }
                 }

@@ -51,7 +51,7 @@ impl SkyFile {
                 Ok(Err(error)) => Err(error.to_string()),
                 Err(fault) => Err(format!("{}: the program has a fault: {fault}", file.display())),
             };
-            inbox.put(Note::Sky(SkyNote { outcome, progress }));
+            inbox.put(Note::Sky(Box::new(SkyNote { outcome, progress })));
         };
         // Without a thread nothing comes of it, as of scenes.
         let _ = std::thread::Builder::new().name("sky".to_owned()).spawn(read);

@@ -207,7 +207,7 @@ fn a_dropped_sky_is_brought_to_the_scene_and_followed() {
     let value = |outcome: Result<SkyArrival, String>| outcome.expect("a sky").image.texels[0][0];
     let arrival = brought(&mut scenes, &woken).expect("a sky");
     assert_eq!((&arrival.file, arrival.image.texels[0][0]), (&hdr, 0.25));
-    assert_eq!(scenes.recent().files(), [file.clone()], "only scenes are remembered");
+    assert_eq!(scenes.recent().files(), std::slice::from_ref(&file), "only scenes are remembered");
     folder.write("sky.HDR", sky(128));
     assert_eq!(value(brought(&mut scenes, &woken)), 0.5);
     folder.write("sky.HDR", "damaged");

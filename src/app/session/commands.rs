@@ -35,7 +35,7 @@ impl Session {
             Command::Open => self.wish(Wish::Open),
             Command::Reload => self.wish(Wish::Reload),
             Command::ToggleWarnings if self.scene.warnings.is_empty() => {
-                self.notices.tell(now, "The scene has no warnings")
+                self.notices.tell(now, "The scene has no warnings");
             }
             Command::ToggleWarnings => self.wish(Wish::ToggleWarnings),
             Command::Inspect => self.inspect(),

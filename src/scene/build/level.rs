@@ -139,8 +139,9 @@ pub fn regions(probe: &mut Probe, floors: &Floors, unit: Unit) -> Vec<Region> {
             neighbours.push(floor.column + floors.columns[0]);
         }
         for column in neighbours {
-            for j in first[column]..first[column + 1] {
-                if is_passable(probe, floor.at, walkable[j].at, metre) {
+            let beside = first[column]..first[column + 1];
+            for (j, other) in beside.clone().zip(&walkable[beside]) {
+                if is_passable(probe, floor.at, other.at, metre) {
                     union.join(i, j);
                 }
             }
