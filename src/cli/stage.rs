@@ -4,6 +4,7 @@ use super::options::{Options, Reading, View, check_size};
 use super::progress::Drawing;
 use super::values::Size;
 use super::{Failure, stdout};
+use raywalk::scene::start::Entry;
 use raywalk::scene::{self, Camera, LoadOptions, Scene, SceneError};
 use raywalk::settings::Settings;
 use std::sync::Arc;
@@ -102,11 +103,14 @@ pub fn camera(scene: &Scene, view: &View) -> Result<(String, Camera), Failure> {
         Failure::Usage(format!("--camera: {} has no camera {wanted}; it has {}", scene.name, names.join(", ")))
     })?;
     let base = named.camera;
+    // Elsewhere, the lens that framed the scene means nothing.
+    let is_elsewhere = view.eye.is_some() && scene.start.entry != Entry::Camera;
+    let fov = if is_elsewhere { Camera::default().fov } else { base.fov };
     let camera = Camera {
         eye: view.eye.map_or(base.eye, |eye| (eye - scene.origin).as_vec3()),
         look_at: view.look_at.map_or(base.look_at, |point| (point - scene.origin).as_vec3()),
         up: view.up.map_or(base.up, |up| up.as_vec3()),
-        fov: view.fov.unwrap_or(base.fov),
+        fov: view.fov.unwrap_or(fov),
         ..base
     };
     if camera.is_valid() {

@@ -27,6 +27,20 @@ fn a_path_that_looks_along_up_is_rendered_whole_or_refused_at_once() {
 }
 
 #[test]
+fn from_elsewhere_a_scene_without_a_camera_is_seen_by_the_usual_lens() {
+    let bench = Bench::new();
+    bench
+        .write("ball.json", r#"{ "version": 1, "objects": [{ "type": "sphere", "center": [0, 0, 0], "radius": 1 }] }"#);
+    let view = "render ball.json --size 64x36 --eye 0,1,4 --look-at 0,0,0";
+    bench.done(&format!("{view} -o as_usual.png"));
+    bench.done(&format!("{view} --fov 60 -o sixty.png"));
+    bench.done("render ball.json --size 64x36 -o framed.png");
+    bench.done("render ball.json --size 64x36 --fov 60 -o wider.png");
+    assert_eq!(bench.read("as_usual.png"), bench.read("sixty.png"));
+    assert_ne!(bench.read("framed.png"), bench.read("wider.png"), "the lens that frames it is longer");
+}
+
+#[test]
 fn a_folder_stands_for_the_scene_in_it() {
     let bench = Bench::new();
     std::fs::create_dir(bench.path("room")).expect("a folder");

@@ -28,6 +28,11 @@ const ASPECT: f64 = 4.0 / 3.0;
 /// Least height of a scene that is not small, and least walkable area of a room in such a scene, in metres.
 const SMALL: f32 = 1.9;
 const CLOSET: f32 = 3.0;
+/// Things lower than this share of their width are seen from so many of their half heights above their top, if need be from a
+/// direction that is raised by so much.
+const LOW: f64 = 0.7;
+const ABOVE_TOP: f64 = 0.4;
+const RAISED: [f64; 3] = [0.2, 0.4, 0.7];
 /// Least share of the picture's points that show a front.
 const SHOWN: f64 = 0.02;
 
@@ -92,13 +97,28 @@ fn frame(subject: &Subject, render: &RenderDefaults, from_behind: bool) -> Camer
     if bounds.is_empty() {
         return Camera { eye: Vec3::new(0.0, 1.6, 5.0), ..defaults };
     }
-    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-    let (center, half) = ((min + max) / 2.0, (max - min) / 2.0);
+    let half = (bounds.max.as_dvec3() - bounds.min.as_dvec3()) / 2.0;
+    let from = if from_behind { -view_from(half) } else { view_from(half) };
+    let camera = frame_from(subject, render, from);
+    // What is low is seen from above its top: table tops, floors of houses.
+    let is_low = half.y < LOW * half.x.max(half.z);
+    let top = f64::from(bounds.max.y) + half.y * ABOVE_TOP;
+    if !is_low || f64::from(camera.eye.y) >= top {
+        return camera;
+    }
+    let higher = RAISED.iter().map(|raised| frame_from(subject, render, (from + DVec3::Y * *raised).normalize()));
+    higher.reduce(|lower, higher| if f64::from(lower.eye.y) >= top { lower } else { higher }).unwrap_or(camera)
+}
+
+/// A camera in a unit direction from the subject, whose picture that fills.
+fn frame_from(subject: &Subject, render: &RenderDefaults, from: DVec3) -> Camera {
+    let defaults = Camera::default();
+    let (min, max) = (subject.bounds.min.as_dvec3(), subject.bounds.max.as_dvec3());
+    let center = (min + max) / 2.0;
     let aspect = match (render.width, render.height) {
         (Some(width), Some(height)) => f64::from(width) / f64::from(height),
         _ => ASPECT,
     };
-    let from = if from_behind { -view_from(half) } else { view_from(half) };
     let right = DVec3::Y.cross(from).normalize();
     let up = from.cross(right);
     let tangent = libm::tan(f64::from(FOV).to_radians() / 2.0) / MARGIN;
@@ -247,6 +267,18 @@ mod tests {
         let distance = f64::from(camera.eye.distance(Vec3::new(3.0, 0.0, 0.0)));
         let share = libm::tan(libm::asin(2.0 / distance)) / libm::tan(f64::from(FOV / 2.0).to_radians());
         assert!((share * MARGIN - 1.0).abs() < 0.01, "{share}");
+    }
+
+    #[test]
+    fn the_tops_of_low_things_are_seen() {
+        for (x, y, z) in [(1.0, 0.6, 1.8), (2.0, 0.5, 2.0), (1.0, 0.5, 15.0), (9.0, 1.0, 2.0)] {
+            let corners = corners(Vec3::new(-x, 0.0, -z), Vec3::new(x, 2.0 * y, z));
+            for from_behind in [false, true] {
+                let camera = frame(&subject(&corners), &RenderDefaults::default(), from_behind);
+                assert!(from_behind || camera.eye.y > 2.2 * y, "{x} {y} {z}: {}", camera.eye.y);
+                assert!(corners.iter().all(|(point, _)| sees(&camera, *point, 16.0 / 9.0)));
+            }
+        }
     }
 
     #[test]
