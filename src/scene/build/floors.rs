@@ -1,7 +1,6 @@
 //! The floors of a scene, found by rays straight down, and the unit that their sizes tell.
 
-use super::interior::{VIEWS, horizontal};
-use super::probe::Probe;
+use super::probe::{Probe, VIEWS, horizontal};
 use crate::geometry::{Aabb, NO_PRIMITIVE};
 use crate::scene::start::Unit;
 use glam::Vec3;

@@ -1,12 +1,12 @@
 //! The camera of a scene that gives none: one on foot where there is floor to walk on, else one that frames the subject.
 
 use super::floors::{Floors, Scale};
-use super::level::{self, Stand};
 use super::probe::Probe;
 use super::spawn::{self, Spawn};
+use super::stand::Stand;
 use super::subject::Subject;
 use super::surface_samples::SurfaceSamples;
-use super::{brightness, interior};
+use super::{brightness, interior, level};
 use crate::geometry::Aabb;
 use crate::scene::start::{Entry, Start, Unit};
 use crate::scene::{Camera, RenderDefaults};

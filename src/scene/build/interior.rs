@@ -1,12 +1,10 @@
 //! A place to stand in an interior: on the floor, looking into the longest free direction.
 
-use super::level::{EYE_HEIGHT, Stand};
-use super::probe::{Met, Probe, around};
+use super::probe::{Met, Probe, VIEWS, around, horizontal};
+use super::stand::{EYE_HEIGHT, Stand};
 use crate::geometry::Aabb;
-use crate::scene::Camera;
 use crate::scene::start::Unit;
 use glam::Vec3;
-use std::f64::consts::TAU;
 
 /// Places tried along each horizontal axis.
 const PLACES: usize = 7;
@@ -28,8 +26,6 @@ const INSIDE: f32 = 0.2;
 const OPEN: f64 = 0.16;
 /// What lies farther outside of the bounds than this share of their extent is not looked at.
 const BEYOND: f32 = 0.05;
-/// Horizontal directions: of the walls, and tried for the view.
-pub(super) const VIEWS: usize = 32;
 /// Least share of them that see the front of something: a table has no walls.
 const WALLED: f32 = 0.9;
 /// How many of them to either side of a view are in the picture.
@@ -95,8 +91,7 @@ pub fn stand(probe: &mut Probe, bounds: Aabb, unit: Unit) -> Option<Stand> {
     let open = libm::log(OPEN * libm::hypot(size.x, size.z));
     let is_interior = inside as f32 >= INSIDE * with_floor as f32 && openness >= open;
     let Place { eye, height, view, free, .. } = best.filter(|_| is_interior)?;
-    let camera = Camera { eye, look_at: eye + view * free.max(eye.abs().max_element() * 1e-3), ..Camera::default() };
-    camera.is_valid().then_some(Stand { camera, eye_height: height })
+    Stand::looking(eye, view, free, height)
 }
 
 /// Where it is looked from a place.
@@ -169,15 +164,6 @@ fn eye_above_floor(probe: &mut Probe, above: Vec3, bounds: Aabb, unit: Unit) -> 
     let least = if bounds.size().y >= ROOM * metre { ROOM * metre } else { step };
     let height = (EYE_HEIGHT * metre).min(EYE_SHARE * room);
     (room > least).then_some((ground + Vec3::Y * height, height))
-}
-
-/// [`VIEWS`] horizontal directions, in order.
-pub(super) fn horizontal() -> Vec<Vec3> {
-    let direction = |i: usize| {
-        let angle = TAU * i as f64 / VIEWS as f64;
-        Vec3::new(libm::cos(angle) as f32, 0.0, libm::sin(angle) as f32).normalize()
-    };
-    (0..VIEWS).map(direction).collect()
 }
 
 #[cfg(test)]

@@ -2,15 +2,12 @@
 
 use super::brightness;
 use super::floors::{Floor, Floors, Scale};
-use super::interior::{VIEWS, horizontal};
-use super::probe::{Met, Probe};
+use super::probe::{Met, Probe, VIEWS, horizontal};
+use super::stand::{EYE_HEIGHT, Stand};
 use crate::geometry::Aabb;
-use crate::scene::Camera;
 use crate::scene::start::Unit;
 use glam::Vec3;
 
-/// Eye height of a person, in metres.
-pub const EYE_HEIGHT: f32 = 1.6;
 /// Least room above a floor for somebody to walk on it.
 const HEAD_ROOM: f32 = 2.0;
 /// What is passed at this height is passable, and steps up to this height are climbed, in metres; so are slopes of 45°.
@@ -52,15 +49,6 @@ const CENTRAL: f32 = 1.5;
 const SHOWN: f32 = 0.35;
 /// Best places that are looked at closely.
 const TRIES: usize = 24;
-
-/// Somebody who stands on a floor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stand {
-    /// What they see.
-    pub camera: Camera,
-    /// How high their eye is above the floor.
-    pub eye_height: f32,
-}
 
 /// A place on a floor and the best view from there.
 struct Place {
@@ -259,13 +247,9 @@ impl Looking {
                 return None;
             }
         }
-        let camera =
-            Camera { eye, look_at: eye + view * free.max(eye.abs().max_element() * 1e-3), ..Camera::default() };
-        if !camera.is_valid() {
-            return None;
-        }
-        let picture = probe.see(eye, &brightness::view(&camera), 0.0);
+        let stand = Stand::looking(eye, view, free, eye_height)?;
+        let picture = probe.see(eye, &brightness::view(&stand.camera), 0.0);
         let shown = picture.iter().flatten().count() as f32;
-        (shown >= SHOWN * picture.len() as f32).then_some(Stand { camera, eye_height })
+        (shown >= SHOWN * picture.len() as f32).then_some(stand)
     }
 }

@@ -23,6 +23,7 @@ pub mod probe;
 mod sharing;
 mod sky;
 mod spawn;
+mod stand;
 mod subject;
 mod surface_samples;
 mod surroundings;

@@ -157,6 +157,18 @@ pub fn around(count: usize) -> Vec<Vec3> {
     (0..count).map(direction).collect()
 }
 
+/// How many horizontal directions tell of walls and are tried for the view.
+pub const VIEWS: usize = 32;
+
+/// [`VIEWS`] horizontal directions, in order.
+pub fn horizontal() -> Vec<Vec3> {
+    let direction = |i: usize| {
+        let angle = std::f64::consts::TAU * i as f64 / VIEWS as f64;
+        Vec3::new(libm::cos(angle) as f32, 0.0, libm::sin(angle) as f32).normalize()
+    };
+    (0..VIEWS).map(direction).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

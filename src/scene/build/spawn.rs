@@ -1,9 +1,8 @@
 //! Where a file lets players start.
 
 use super::brightness;
-use super::interior::horizontal;
-use super::level::EYE_HEIGHT;
-use super::probe::Probe;
+use super::probe::{Probe, horizontal};
+use super::stand::EYE_HEIGHT;
 use crate::geometry::Aabb;
 use crate::scene::Camera;
 use crate::scene::start::Unit;
