@@ -81,21 +81,24 @@ const STEPS: f32 = 64.0;
 #[inline(always)]
 fn in_steps<S: Simd>(simd: S, sky: &Smooth, direction: V3<S::f32s>) -> V3<S::f32s> {
     let y = (direction.y * STEPS).floor() * (1.0 / STEPS);
-    V3::splat(simd, sky.base) + V3::splat(simd, sky.slope).scale(y) + V3::splat(simd, sky.bend).scale(y.abs())
+    gradient(simd, sky, y, y.abs())
+}
+
+/// The radiance of a sky without its lobes, given y, the sine of the elevation, and |y|: or what is left of both.
+#[inline(always)]
+fn gradient<S: Simd>(simd: S, sky: &Smooth, y: S::f32s, bend: S::f32s) -> V3<S::f32s> {
+    V3::splat(simd, sky.base) + V3::splat(simd, sky.slope).scale(y) + V3::splat(simd, sky.bend).scale(bend)
 }
 
 #[inline(always)]
 fn smooth<S: Simd>(simd: S, sky: &Smooth, direction: V3<S::f32s>) -> V3<S::f32s> {
-    let y = direction.y;
-    let gradient =
-        V3::splat(simd, sky.base) + V3::splat(simd, sky.slope).scale(y) + V3::splat(simd, sky.bend).scale(y.abs());
     let mut light = S::f32s::splat(simd, 0.0);
     for lobe in &sky.lobes {
         let off = S::f32s::splat(simd, 1.0) - V3::splat(simd, lobe.axis).dot(direction);
         let spread = off * lobe.focus + 1.0;
         light += S::f32s::splat(simd, lobe.peak) / (spread * spread);
     }
-    gradient + V3::all(light)
+    gradient(simd, sky, direction.y, direction.y.abs()) + V3::all(light)
 }
 
 /// What the sky, as a mirror reflects it, is blurred to by roughness.
@@ -127,21 +130,16 @@ fn smooth_glossy<S: Simd>(simd: S, sky: &Smooth, direction: V3<S::f32s>, roughne
     let corner = alpha * 2.0;
     let rounded = ((y * y + corner * corner).sqrt() - corner) / ((corner * corner + 1.0).sqrt() - corner);
     let bend = level + (top - level) * rounded;
-    let gradient =
-        V3::splat(simd, sky.base) + V3::splat(simd, sky.slope).scale(y * top) + V3::splat(simd, sky.bend).scale(bend);
     let mut light = S::f32s::splat(simd, 0.0);
     for Lobe { axis, focus, peak } in &sky.lobes {
-        // Blurred, it is focus / (1 + blur focus) narrow, and of the same sum over all directions.
+        // Blurred, it is focus / (1 + alpha focus) narrow, and of the same sum over all directions.
         let off = one - V3::splat(simd, *axis).dot(direction);
-        let wide = alpha * (LOBE_BLUR * focus) + 1.0;
+        let wide = alpha * *focus + 1.0;
         let spread = off * *focus + wide;
         light += wide * (wide + 2.0 * focus) * (peak / (1.0 + 2.0 * focus)) / (spread * spread);
     }
-    gradient + V3::all(light)
+    gradient(simd, sky, y * top, bend) + V3::all(light)
 }
-
-/// How fast lobes grow with the square of the roughness.
-const LOBE_BLUR: f32 = 1.0;
 
 /// Irradiance over π at unit normals.
 #[inline(always)]
