@@ -75,7 +75,7 @@ impl Blurred {
 struct Halved {
     width: u32,
     height: u32,
-    texels: Vec<[f32; 3]>,
+    texels: Box<[[f32; 3]]>,
 }
 
 impl Halved {
@@ -94,10 +94,7 @@ impl SkyMap<'_> {
             let sum = texel(2 * x, 2 * y) + texel(right, 2 * y) + texel(2 * x, below) + texel(right, below);
             (sum / 4.0).as_vec3().to_array()
         };
-        let mean = &mean;
-        let rows = (0..height).into_par_iter();
-        let texels = rows.flat_map_iter(|y| (0..width).map(move |x| mean(x, y))).collect();
-        Halved { width, height, texels }
+        Halved { width, height, texels: painted(width, height, mean) }
     }
 
     fn halved_again_and_again(&self) -> Vec<Halved> {
@@ -148,6 +145,14 @@ impl SkyMap<'_> {
         let row = |y: f64| texel(left, y) * (1.0 - across) + texel(left + 1.0, y) * across;
         row(above) * (1.0 - down) + row(above + 1.0) * down
     }
+}
+
+/// The texels of a picture of `width` x `height`, row by row from the top, given by column and row.
+fn painted(width: u32, height: u32, texel: impl Fn(u32, u32) -> [f32; 3] + Sync) -> Box<[[f32; 3]]> {
+    let texel = &texel;
+    let rows = (0..height).into_par_iter();
+    let texels: Vec<[f32; 3]> = rows.flat_map_iter(|row| (0..width).map(move |column| texel(column, row))).collect();
+    texels.into()
 }
 
 /// Where the middle of a texel of a picture of `width` x `height` is seen.
@@ -208,10 +213,7 @@ fn sampled(sizes: &[SkyMap<'_>], roughness: f32, width: u32) -> Box<[[f32; 3]]> 
         };
         (taps.iter().map(seen).sum::<DVec3>() / weight).as_vec3().to_array()
     };
-    let mean = &mean;
-    let rows = (0..height).into_par_iter();
-    let texels: Vec<[f32; 3]> = rows.flat_map_iter(|row| (0..width).map(move |column| mean(column, row))).collect();
-    texels.into()
+    painted(width, height, mean)
 }
 
 /// A sky as a surface of some roughness reflects it, by the sum over all texels.
@@ -240,10 +242,7 @@ fn summed(sky: &SkyMap<'_>, roughness: f32, width: u32) -> Box<[[f32; 3]]> {
         }
         (sum / weights).as_vec3().to_array()
     };
-    let mean = &mean;
-    let rows = (0..height).into_par_iter();
-    let texels: Vec<[f32; 3]> = rows.flat_map_iter(|row| (0..width).map(move |column| mean(column, row))).collect();
-    texels.into()
+    painted(width, height, mean)
 }
 
 #[cfg(test)]
