@@ -2,7 +2,7 @@
 
 use crate::geometry::{Geometry, Home, Opaque, OpaqueList, PrimitiveIndex, SharedMesh, VertexAttributes, VertexExtras};
 use crate::scene::material::{Lookup, Model, Relief, Scaled};
-use crate::scene::sky::SkyLight;
+use crate::scene::sky::{LEAST_ROUGHNESS, SkyLight};
 use crate::scene::{Material, Scene, Texture};
 use glam::{Vec3, Vec4};
 
@@ -116,7 +116,7 @@ impl Maps {
 }
 
 /// Metallic-roughness surfaces smoother than this mirror and refract rays.
-pub(super) const MIRROR_ROUGHNESS: f32 = 0.1;
+pub(super) const MIRROR_ROUGHNESS: f32 = LEAST_ROUGHNESS;
 
 impl FlatMaterial {
     fn new(material: &Material, textures: &[Texture]) -> Self {

@@ -3,6 +3,7 @@
 use super::probe::{Probe, around};
 use crate::geometry::PrimitiveIndex;
 use crate::scene::light::{Falloff, LightKind};
+use crate::scene::sky::luminance;
 use crate::scene::{Camera, Light};
 use glam::Vec3;
 
@@ -19,8 +20,6 @@ const SHADOW_RAYS: usize = 1 << 16;
 const BRIGHTEST: f64 = 0.05;
 /// How many times brighter than usual the brightest points may be before they count as usual.
 const HIGHLIGHT: f64 = 3.0;
-/// Linear sRGB to luminance.
-const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
 /// The usual irradiance of the surfaces that `camera` sees: the mean of its logarithm over what is lit at all (Reinhard et
 /// al., SIGGRAPH 2002), raised where much is far brighter. `None` where nothing is lit, or finding out takes
@@ -116,7 +115,7 @@ fn irradiance(probe: &mut Probe, point: Vec3, normal: Vec3, lights: &[Light]) ->
             _ => 1.0,
         };
         towards.push(direction);
-        arriving.push((distance, cosine * f64::from(light.color.dot(LUMINANCE)) / weakened));
+        arriving.push((distance, cosine * f64::from(luminance(light.color)) / weakened));
     }
     // Far enough from the surface not to meet it again.
     let step = 1e-4 * point.abs().max_element().max(1.0);
