@@ -7,7 +7,7 @@ use crate::geometry::Aabb;
 use crate::scene::environment::{Environment, Sky};
 use crate::scene::light::{Falloff, LightKind};
 use crate::scene::material::{Lookup, Model};
-use crate::scene::sky::{SkyLight, luminance};
+use crate::scene::sky::{Irradiance, SkyLight, luminance};
 use crate::scene::texture::linear_to_srgb;
 use crate::scene::{Camera, Light, Material, Object, Texture};
 use glam::{DVec2, Vec3};
@@ -82,7 +82,7 @@ impl Lit<'_> {
         let scattered = if self.is_physical() { PI } else { 1.0 };
         let irradiance = by_lights + scattered * by_sky;
         let stops = self.stops(if irradiance > 0.0 { irradiance } else { 1.0 });
-        let stops = self.adjusted(stops, &lights, &environment);
+        let stops = self.adjusted(stops, &lights, &sky);
         let ambient = self.is_exposed.then_some(Vec3::ZERO);
         Lighting { lights, headlight: false, ambient, environment: Some(environment), stops: stops as f32 }
     }
@@ -107,7 +107,8 @@ impl Lit<'_> {
             let (kind, strength, falloff) = near.filter(|(_, strength, _)| strength.is_normal()).unwrap_or(sun);
             let key = Light { name: Some("key".to_owned()), kind, color: Vec3::splat(strength), falloff };
             let environment = studio((1.0 - KEY) / full);
-            let stops = self.adjusted(KEY_STOPS, std::slice::from_ref(&key), &environment);
+            let sky = SkyLight::new(&environment).irradiance;
+            let stops = self.adjusted(KEY_STOPS, std::slice::from_ref(&key), &sky);
             return Lighting {
                 lights: vec![key],
                 headlight: false,
@@ -121,7 +122,8 @@ impl Lit<'_> {
         let environment = studio(AMBIENT_SHARE * scattered as f32 / full);
         let headlight = lights.is_empty();
         let at_eye = [brightness::at_eye(&self.camera)];
-        let stops = self.adjusted(self.stops(usual), if headlight { &at_eye } else { &lights }, &environment);
+        let sky = SkyLight::new(&environment).irradiance;
+        let stops = self.adjusted(self.stops(usual), if headlight { &at_eye } else { &lights }, &sky);
         let environment = Some(environment);
         Lighting { lights, headlight, ambient: Some(Vec3::ZERO), environment, stops: stops as f32 }
     }
@@ -159,9 +161,8 @@ impl Lit<'_> {
     }
 
     /// `stops`, but more or less of them where what is seen would be too dark or bright on the whole.
-    fn adjusted(&mut self, stops: f64, lights: &[Light], environment: &Environment) -> f64 {
+    fn adjusted(&mut self, stops: f64, lights: &[Light], sky: &Irradiance) -> f64 {
         let points = brightness::points(&mut self.probe, &self.camera, lights);
-        let sky = SkyLight::new(environment).irradiance;
         let physical = self.is_physical();
         let colors: Vec<Colors> = self.materials.iter().map(|material| self.colors_of(material)).collect();
         let light_of = |point: &Point| {
