@@ -1,12 +1,13 @@
 //! Images: decoded once each, side by side, within a budget for all of them together.
 
 use super::dds::{Dds, DdsError};
+use super::refused::Refused;
 use crate::scene::desc::map::shortened;
 use crate::scene::desc::problem::{Outcome, Problem, Warnings};
 use crate::scene::desc::{ImageDesc, ImageSource, NameRef};
 use crate::scene::files::{CANCELLED, FileError, Files};
 use crate::scene::guard;
-use crate::scene::limits::{Limits, exceeded};
+use crate::scene::limits::Limits;
 use crate::scene::material::Encoding;
 use crate::scene::texels::Texels;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
@@ -25,20 +26,10 @@ enum DecodeError {
     Image(#[from] ImageError),
     #[error("{0}")]
     Dds(#[from] DdsError),
-    #[error("width or height is {}", exceeded("texture-edge", *.0))]
-    Edge(u64),
-    #[error("the scene's textures have {}", exceeded("texture-bytes", *.0))]
-    Budget(u64),
-    #[error("bytes that it takes to decode it: {}", exceeded("texture-bytes", *.0))]
-    Effort(u64),
-    #[error("{CANCELLED}")]
-    Cancelled,
-    #[error("the decoder gave up; the file is damaged")]
-    Panicked,
-    #[error("it has no pixels")]
-    Empty,
     #[error("it has too many pixels")]
     Size,
+    #[error("{0}")]
+    Refused(#[from] Refused),
 }
 
 /// What an image is known by: images of one source and encoding share their texels.
@@ -234,15 +225,15 @@ impl ImageStore {
                 let opacity = image.opacity.as_deref().map_or(Ok(Needs::default()), needed)?;
                 let needs = needed(&image.bytes)?.and(opacity);
                 if needs.meanwhile > self.limits.texture_bytes {
-                    return Err(DecodeError::Effort(self.limits.texture_bytes));
+                    return Err(Refused::Effort(self.limits.texture_bytes).into());
                 }
                 let left = self.bytes_left.checked_sub(needs.kept);
-                self.bytes_left = left.ok_or(DecodeError::Budget(self.limits.texture_bytes))?;
+                self.bytes_left = left.ok_or(Refused::Budget(self.limits.texture_bytes))?;
                 Ok(needs)
             })
             .collect();
         let decode = |(image, budget): (Waiting, Result<Needs, DecodeError>)| {
-            let allowed = if progress.is_cancelled() { Err(DecodeError::Cancelled) } else { budget };
+            let allowed = if progress.is_cancelled() { Err(Refused::Cancelled.into()) } else { budget };
             let texels = allowed.and_then(|needs| guarded(|| decode(&image, needs.meanwhile)));
             progress.advance();
             (image.key, texels.map(Arc::new).map_err(|error| one_line(&error.to_string())))
@@ -305,7 +296,7 @@ const KNOWN: &str = "PNG, JPEG, BMP, WebP, TGA, TIFF, GIF and DDS are known";
 
 /// The decoders are meant never to panic on damaged files; should one do so, only its image is lost.
 fn guarded<T>(decode: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, DecodeError> {
-    guard::guarded(decode).unwrap_or(Err(DecodeError::Panicked))
+    guard::guarded(decode).unwrap_or(Err(Refused::Panicked.into()))
 }
 
 /// A decoder that has read an image's header.
@@ -347,10 +338,10 @@ impl Needs {
             (width, height, decoder.total_bytes(), is_wide)
         };
         if u64::from(width.max(height)) > limits.texture_edge {
-            return Err(DecodeError::Edge(limits.texture_edge));
+            return Err(Refused::Edge(limits.texture_edge).into());
         }
         if width == 0 || height == 0 {
-            return Err(DecodeError::Empty);
+            return Err(Refused::Empty.into());
         }
         let pixels = u64::from(width) * u64::from(height);
         // Four or eight bytes a texel, and a third more for the smaller sizes.

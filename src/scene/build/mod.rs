@@ -20,6 +20,7 @@ mod parts;
 mod placeholder;
 mod placement;
 pub mod probe;
+mod refused;
 mod sharing;
 mod sky;
 mod spawn;

@@ -1,5 +1,6 @@
 //! What surrounds a scene: its file's own environment, or the one that the load asks for in its place.
 
+use super::refused::Refused;
 use super::sky::{self, Allowed, Decoded, SkyError};
 use super::{ImageStore, SceneBuilder};
 use crate::scene::desc::map::shortened;
@@ -94,7 +95,7 @@ pub fn read_sky(
         other => SceneError::Invalid { place: place(), message: format!("cannot read the environment: {other}") },
     })?;
     let Decoded { image, odd } = decode(path, &bytes, limits, bytes_left, progress).map_err(|error| match error {
-        SkyError::Cancelled => SceneError::Cancelled { place: place() },
+        SkyError::Refused(Refused::Cancelled) => SceneError::Cancelled { place: place() },
         other => SceneError::Invalid { place: place(), message: format!("cannot decode the environment: {other}") },
     })?;
     let odd = odd.into_iter().map(|odd| Warning { place: place(), message: format!("the environment: {odd}") });

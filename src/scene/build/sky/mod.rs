@@ -10,10 +10,10 @@ mod canvas;
 mod openexr;
 mod radiance;
 
+use super::refused::Refused;
 use crate::scene::environment::SkyImage;
-use crate::scene::files::CANCELLED;
 use crate::scene::guard::guarded;
-use crate::scene::limits::{Limits, exceeded};
+use crate::scene::limits::Limits;
 use crate::scene::progress::Progress;
 use canvas::Canvas;
 
@@ -26,18 +26,8 @@ pub enum SkyError {
     Radiance(#[from] radiance::RadianceError),
     #[error("{0}")]
     Exr(#[from] openexr::ExrError),
-    #[error("it has no pixels")]
-    Empty,
-    #[error("width or height is {}", exceeded("texture-edge", *.0))]
-    Edge(u64),
-    #[error("the scene's textures have {}", exceeded("texture-bytes", *.0))]
-    Budget(u64),
-    #[error("bytes that it takes to decode it: {}", exceeded("texture-bytes", *.0))]
-    Effort(u64),
-    #[error("{CANCELLED}")]
-    Cancelled,
-    #[error("the decoder gave up; the file is damaged")]
-    Panicked,
+    #[error("{0}")]
+    Refused(#[from] Refused),
 }
 
 /// What an image may ask for, and who may end it.
@@ -55,17 +45,17 @@ impl Allowed<'_> {
     /// Whether a picture of this size may be decoded.
     fn check_size(&self, width: u64, height: u64) -> Result<(), SkyError> {
         if width == 0 || height == 0 {
-            return Err(SkyError::Empty);
+            return Err(Refused::Empty.into());
         }
         if width.max(height) > self.limits.texture_edge {
-            return Err(SkyError::Edge(self.limits.texture_edge));
+            return Err(Refused::Edge(self.limits.texture_edge).into());
         }
         let kept = Canvas::bytes(width, height);
-        if kept > self.bytes { Err(SkyError::Budget(self.limits.texture_bytes)) } else { Ok(()) }
+        if kept > self.bytes { Err(Refused::Budget(self.limits.texture_bytes).into()) } else { Ok(()) }
     }
 
     fn check_cancelled(&self) -> Result<(), SkyError> {
-        if self.progress.is_cancelled() { Err(SkyError::Cancelled) } else { Ok(()) }
+        if self.progress.is_cancelled() { Err(Refused::Cancelled.into()) } else { Ok(()) }
     }
 }
 
@@ -91,7 +81,7 @@ pub fn decode(name: &str, bytes: &[u8], allowed: Allowed) -> Result<Decoded, Sky
             true => openexr::decode(bytes, stand_in, allowed),
             false => radiance::decode(bytes, stand_in, allowed),
         })
-        .unwrap_or(Err(SkyError::Panicked))
+        .unwrap_or(Err(Refused::Panicked.into()))
     };
     let (mut canvas, mut odd) = paint(0.0)?;
     if canvas.faults.infinite > 0 && canvas.largest > 0.0 {

@@ -1,7 +1,7 @@
 //! OpenEXR pictures, block by block: no more of one is in memory than a block and the finished picture.
 
 use super::canvas::Canvas;
-use super::{Allowed, SkyError};
+use super::{Allowed, Refused, SkyError};
 use crate::scene::desc::map::shortened;
 use exr::block::chunk::CompressedBlock;
 use exr::block::reader::{ChunksReader, Reader};
@@ -82,7 +82,7 @@ fn check(header: &Header, allowed: Allowed) -> Result<(), SkyError> {
     let (width, height) = (header.layer_size.width() as u64, header.layer_size.height() as u64);
     let most = allowed.limits.texture_edge;
     if width.max(height) > most {
-        return Err(SkyError::Edge(most));
+        return Err(Refused::Edge(most).into());
     }
     let pixels = match header.blocks {
         BlockDescription::Tiles(tiles) => {
@@ -93,7 +93,7 @@ fn check(header: &Header, allowed: Allowed) -> Result<(), SkyError> {
     // A block is in memory as it is stored, in no more bytes, and as it is decoded.
     let bytes = pixels.saturating_mul(header.channels.bytes_per_pixel as u64).saturating_mul(2);
     let most = allowed.limits.texture_bytes;
-    if bytes > most { Err(SkyError::Effort(most)) } else { Ok(()) }
+    if bytes > most { Err(Refused::Effort(most).into()) } else { Ok(()) }
 }
 
 /// The picture within the plane of a layer's coordinates.

@@ -362,6 +362,6 @@ fn limits_and_cancelling_end_it() {
     progress.cancel();
     for bytes in [picture, exr] {
         let allowed = Allowed { limits: &limits, bytes: 1 << 20, progress: &progress };
-        assert!(matches!(decode("sky", &bytes, allowed), Err(SkyError::Cancelled)));
+        assert!(matches!(decode("sky", &bytes, allowed), Err(SkyError::Refused(Refused::Cancelled))));
     }
 }
